@@ -134,6 +134,10 @@ hostile: ## Call the C with HOSTILE_STATES (1,000,000) hostile states a model an
 prove: ## Prove with Frama-C that the C of PROVED has no run-time errors
 	$(or $(wildcard $(BIN)/python),$(PYTHON)) -m tests.tools.prove generated $(PROVED)
 
+.PHONY: architecture
+architecture: $(VENV)/core.stamp ## Write the picture and the table of docs/architecture.md, from the code
+	$(BIN)/python docs/make_architecture.py
+
 .PHONY: schema
 schema: $(VENV)/core.stamp ## Write docs/pne_sym.schema.json
 	$(BIN)/python -c "from pne_sym.model.schema import schema_text; print(schema_text(), end='')" \

@@ -85,14 +85,17 @@ def picture() -> str:
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" '
         f'width="{width}" height="{height}" font-family="sans-serif" role="img">\n'
         "<title>From a specification to a model's folder</title>\n"
-        f'<rect width="{width}" height="{height}" fill="white"/>\n' + "\n".join(parts) + "\n</svg>\n"
+        f'<rect width="{width}" height="{height}" fill="white"/>\n'
+        + "\n".join(parts)
+        + "\n</svg>\n"
     )
 
 
 def _word(stage: Callable[..., object], *, first: bool = False) -> str:
     """What a stage gives, or takes, by its annotation."""
     found = inspect.signature(stage)
-    annotation = next(iter(found.parameters.values())).annotation if first else found.return_annotation
+    given = next(iter(found.parameters.values())).annotation
+    annotation = given if first else found.return_annotation
     return SAID.get(str(annotation), str(annotation))
 
 
@@ -104,7 +107,9 @@ def _text(x: float, y: float, words: str, *, bold: bool = False, small: bool = F
     size, weight = (12, "normal") if small else (13, "bold" if bold else "normal")
     style = f'font-size="{size}" font-weight="{weight}"'
     fill = "#666" if small else "#111"
-    return f'<text x="{x}" y="{y}" text-anchor="middle" fill="{fill}" {style}>{escape(words)}</text>'
+    return (
+        f'<text x="{x}" y="{y}" text-anchor="middle" fill="{fill}" {style}>{escape(words)}</text>'
+    )
 
 
 def page(text: str) -> str:

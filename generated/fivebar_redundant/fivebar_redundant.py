@@ -18,7 +18,9 @@ arrays, ValueError for wrong shapes.  p, a Parameters of this module, follows wh
 position or keyword; all else is given by keyword.
 """
 
+import math
 import warnings
+from itertools import compress
 from numbers import Real
 
 import numpy as np
@@ -30,9 +32,9 @@ __all__ = [
     "NC",
     "NW",
     "NJ",
+    "H",
     "HOME_Q",
     "HOME_X",
-    "H",
     "M",
     "Parameters",
     "Z",
@@ -60,14 +62,7 @@ NJ = 4
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
 
-_LEGS = {  # positions of the legs of each type
-    "rrr": (0,),
-    "rrr2": (1,),
-}
 _DRIVEN_JOINTS = (0, 1, 2)
-_TURNING_DRIVES = (0, 1, 2)
-_ACTUATOR_LEGS = (0, 0, 1)
-_DRIVEN_ROWS = (0, 1)
 
 _DEFAULTS = {
     "gravity": [0.0, -9.81, 0.0],
@@ -302,24 +297,32 @@ def _unfit(value):
     return "" if array.dtype.kind in "iuf" else _KINDS.get(array.dtype.kind, array.dtype.name)
 
 
-def _vector(function, name, value, size):
-    """An argument as an array of floats (..., size), or an error that names it."""
+def _argument(function, name, value, shape, default=None, rule=""):
+    """An argument as an array of floats (..., *shape), or an error that names it."""
+    if value is None and default is not None:
+        return np.full(shape, default)
+    function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
-        value = _numbers(function, name, value)
-    if value.ndim == 0 or value.shape[-1] != size:
-        raise ValueError(f"{function}: {name} has shape {value.shape}, expected (..., {size})")
-    return value
+        array = _numbers(function, name, value)
+    if not shape:
+        if array.shape or not 0.0 < array < np.inf:
+            raise ValueError(f"{function}: {name} is {value!r}, expected a positive number")
+    elif array.shape[-len(shape) :] != shape:
+        wanted = ", ".join(map(str, ("...", *shape)))
+        raise ValueError(f"{function}: {name} has shape {array.shape}, expected ({wanted})")
+    elif rule == "positive" and not np.all((array > 0.0) & (array < np.inf)):
+        raise ValueError(f"{function}: {name} must be positive and finite")
+    return array
 
 
-def _lead(**arguments):
-    """Leading shape that arguments (..., n) have in common; ValueError that names them if none."""
-    leads = [v.shape[:-1] for v in arguments.values()]
-    if not any(leads):
+def _lead(leads):
+    """Leading shape that arguments have in common; ValueError that names them if none."""
+    if not any(leads.values()):
         return ()
     try:
-        return np.broadcast_shapes(*leads)
+        return np.broadcast_shapes(*leads.values())
     except ValueError:
-        shapes = ", ".join(f"{name} {lead}" for name, lead in zip(arguments, leads))
+        shapes = ", ".join(f"{name} {lead}" for name, lead in leads.items())
         raise ValueError(f"leading dimensions do not broadcast: {shapes}") from None
 
 
@@ -411,8 +414,6 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
-    _rrr = (len(_LEGS["rrr"]),)
-    _rrr2 = (len(_LEGS["rrr2"]),)
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     platform_mass = p.platform_mass
@@ -519,12 +520,12 @@ def _prepare(p):
     inv_rho2_1_rrr_t_4 = 1.0/rho2_1_rrr_t
     # (rrr-V5) reciprocal vector 1
     inv_size_rrr = 1.0/size_rrr
-    total_rrr = np.sum(np.broadcast_to(rrr_link2_mass, _rrr))
-    total_rrr_x = np.sum(np.broadcast_to(h_star_t_3, _rrr))
-    total_rrr_y = np.sum(np.broadcast_to(h_star_t_4, _rrr))
-    total_rrr_x_2 = np.sum(np.broadcast_to(rrr_platform_point_x, _rrr))
-    total_rrr_y_2 = np.sum(np.broadcast_to(rrr_platform_point_y, _rrr))
-    total_rrr_2 = np.sum(np.broadcast_to(size_rrr_t, _rrr))
+    total_rrr = np.sum(np.broadcast_to(rrr_link2_mass, 1))
+    total_rrr_x = np.sum(np.broadcast_to(h_star_t_3, 1))
+    total_rrr_y = np.sum(np.broadcast_to(h_star_t_4, 1))
+    total_rrr_x_2 = np.sum(np.broadcast_to(rrr_platform_point_x, 1))
+    total_rrr_y_2 = np.sum(np.broadcast_to(rrr_platform_point_y, 1))
+    total_rrr_2 = np.sum(np.broadcast_to(size_rrr_t, 1))
     # (rrr2-K17) squared length, across the axis, of the direction fixed in link 2
     uu_2_rrr2_t = rrr2_platform_joint_offset_x*rrr2_platform_joint_offset_x
     # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
@@ -586,12 +587,12 @@ def _prepare(p):
     inv_rho2_1_rrr2_t_4 = 1.0/rho2_1_rrr2_t
     # (rrr2-V5) reciprocal vector 1
     inv_size_rrr2 = 1.0/size_rrr2
-    total_rrr2 = np.sum(np.broadcast_to(rrr2_link2_mass, _rrr2))
-    total_rrr2_x = np.sum(np.broadcast_to(h_star_t_5, _rrr2))
-    total_rrr2_y = np.sum(np.broadcast_to(h_star_t_6, _rrr2))
-    total_rrr2_x_2 = np.sum(np.broadcast_to(rrr2_platform_point_x, _rrr2))
-    total_rrr2_y_2 = np.sum(np.broadcast_to(rrr2_platform_point_y, _rrr2))
-    total_rrr2_2 = np.sum(np.broadcast_to(size_rrr2_t, _rrr2))
+    total_rrr2 = np.sum(np.broadcast_to(rrr2_link2_mass, 1))
+    total_rrr2_x = np.sum(np.broadcast_to(h_star_t_5, 1))
+    total_rrr2_y = np.sum(np.broadcast_to(h_star_t_6, 1))
+    total_rrr2_x_2 = np.sum(np.broadcast_to(rrr2_platform_point_x, 1))
+    total_rrr2_y_2 = np.sum(np.broadcast_to(rrr2_platform_point_y, 1))
+    total_rrr2_2 = np.sum(np.broadcast_to(size_rrr2_t, 1))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_rrr + total_rrr2
     # (M2) centripetal force and weight of the platform
@@ -605,138 +606,262 @@ def _prepare(p):
     b_c_y = 0.5*total_rrr2_y_2 + 0.5*total_rrr_y_2
     # (C3) rms size of the legs, taken where the platform points coincide
     legs_size = sqrt(0.5*total_rrr2_2 + 0.5*total_rrr_2)
-    shared = {
-        "Z_p_x": float(Z_p_x),
-        "Z_p_y": float(Z_p_y),
-        "b_c_x": float(b_c_x),
-        "b_c_y": float(b_c_y),
-        "gravity_x": float(gravity_x),
-        "gravity_y": float(gravity_y),
-        "h_star_x": float(h_star_x),
-        "h_star_y": float(h_star_y),
-        "legs_size": float(legs_size),
-        "m_star": float(m_star),
+    return {
+        "dynamics": (
+        (Z_p_x, Z_p_y, m_star,),
+            (
+                (1,
+        (J_1_rrr_zz, J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr,
+                    d_Gamma_1_rrr_t, d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, g_r0_x, g_r0_y,
+                    h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
+                    inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
+                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
+                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
+                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
+                    size_rrr,),
+                ),
+                (1,
+        (J_1_rrr2_zz, J_2_rrr2_zz, Jc_1_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2,
+                    d_Gamma_1_rrr2_t, d_Gamma_1_rrr2_y, d_c_rrr2_yy, d_phi_2_rrr2_t, g_r0_x_2,
+                    g_r0_y_2, h_1_rrr2_x, h_1_rrr2_y, h_2_rrr2_x, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
+                    inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t,
+                    rrr2_base_frame_xx, rrr2_base_frame_xy, rrr2_base_frame_yx,
+                    rrr2_base_frame_yy, rrr2_base_point_x, rrr2_base_point_y,
+                    rrr2_joint2_offset_x, rrr2_platform_joint_offset_x, rrr2_platform_point_x,
+                    rrr2_platform_point_y, size_rrr2,),
+                ),
+            ),
+        ),
+        "M": (
+        (m_star,),
+            (
+                (1,
+        (J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, d_Gamma_1_rrr_t,
+                    d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, h_2_rrr_y, inv_Kd_1_rrr_t_5,
+                    inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
+                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
+                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
+                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
+                    size_rrr,),
+                ),
+                (1,
+        (J_2_rrr2_zz, Jc_1_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, d_Gamma_1_rrr2_t,
+                    d_Gamma_1_rrr2_y, d_c_rrr2_yy, d_phi_2_rrr2_t, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
+                    inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t,
+                    rrr2_base_frame_xx, rrr2_base_frame_xy, rrr2_base_frame_yx,
+                    rrr2_base_frame_yy, rrr2_base_point_x, rrr2_base_point_y,
+                    rrr2_joint2_offset_x, rrr2_platform_joint_offset_x, rrr2_platform_point_x,
+                    rrr2_platform_point_y, size_rrr2,),
+                ),
+            ),
+        ),
+        "Z": (
+        (Z_p_x, Z_p_y,),
+            (
+                (1,
+        (J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x, g_r0_y,
+                    h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
+                    inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
+                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
+                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
+                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
+                    size_rrr,),
+                ),
+                (1,
+        (J_1_rrr2_zz, J_2_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, g_r0_x_2,
+                    g_r0_y_2, h_1_rrr2_x, h_1_rrr2_y, h_2_rrr2_x, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
+                    inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t,
+                    rrr2_base_frame_xx, rrr2_base_frame_xy, rrr2_base_frame_yx,
+                    rrr2_base_frame_yy, rrr2_base_point_x, rrr2_base_point_y,
+                    rrr2_joint2_offset_x, rrr2_platform_joint_offset_x, rrr2_platform_point_x,
+                    rrr2_platform_point_y, size_rrr2,),
+                ),
+            ),
+        ),
+        "H": (
+        (),
+            (
+                (1,
+        (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
+                    inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
+                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
+                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
+                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
+                    size_rrr,),
+                ),
+                (1,
+        (Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5, inv_uu_2_rrr2_t,
+                    rho2_1_rrr2_t, rrr2_base_frame_xx, rrr2_base_frame_xy, rrr2_base_frame_yx,
+                    rrr2_base_frame_yy, rrr2_base_point_x, rrr2_base_point_y,
+                    rrr2_joint2_offset_x, rrr2_platform_joint_offset_x, rrr2_platform_point_x,
+                    rrr2_platform_point_y, size_rrr2,),
+                ),
+            ),
+        ),
+        "required": (
+        (gravity_x, gravity_y, m_star,),
+            (
+                (1,
+        (J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x, g_r0_y,
+                    h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
+                    inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
+                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
+                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
+                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
+                    size_rrr,),
+                ),
+                (1,
+        (J_1_rrr2_zz, J_2_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, g_r0_x_2,
+                    g_r0_y_2, h_1_rrr2_x, h_1_rrr2_y, h_2_rrr2_x, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
+                    inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t,
+                    rrr2_base_frame_xx, rrr2_base_frame_xy, rrr2_base_frame_yx,
+                    rrr2_base_frame_yy, rrr2_base_point_x, rrr2_base_point_y,
+                    rrr2_joint2_offset_x, rrr2_platform_joint_offset_x, rrr2_platform_point_x,
+                    rrr2_platform_point_y, size_rrr2,),
+                ),
+            ),
+        ),
+        "inverse_kinematics": (
+        (),
+            (
+                (1,
+        (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t, rho2_1_rrr_t,
+                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
+                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
+                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,),
+                ),
+                (1,
+        (Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5, inv_uu_2_rrr2_t,
+                    rho2_1_rrr2_t, rrr2_base_frame_xx, rrr2_base_frame_xy, rrr2_base_frame_yx,
+                    rrr2_base_frame_yy, rrr2_base_point_x, rrr2_base_point_y,
+                    rrr2_joint2_offset_x, rrr2_platform_joint_offset_x, rrr2_platform_point_x,
+                    rrr2_platform_point_y,),
+                ),
+            ),
+        ),
+        "joint_rates": (
+        (),
+            (
+                (1,
+        (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
+                    inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
+                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
+                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
+                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
+                    size_rrr,),
+                ),
+                (1,
+        (Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5,
+                    inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t,
+                    rrr2_base_frame_xx, rrr2_base_frame_xy, rrr2_base_frame_yx,
+                    rrr2_base_frame_yy, rrr2_base_point_x, rrr2_base_point_y,
+                    rrr2_joint2_offset_x, rrr2_platform_joint_offset_x, rrr2_platform_point_x,
+                    rrr2_platform_point_y, size_rrr2,),
+                ),
+            ),
+        ),
+        "joint_accelerations": (
+        (),
+            (
+                (1,
+        (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
+                    inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
+                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
+                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
+                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
+                    size_rrr,),
+                ),
+                (1,
+        (Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5,
+                    inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t,
+                    rrr2_base_frame_xx, rrr2_base_frame_xy, rrr2_base_frame_yx,
+                    rrr2_base_frame_yy, rrr2_base_point_x, rrr2_base_point_y,
+                    rrr2_joint2_offset_x, rrr2_platform_joint_offset_x, rrr2_platform_point_x,
+                    rrr2_platform_point_y, size_rrr2,),
+                ),
+            ),
+        ),
+        "legs": (
+        (gravity_x, gravity_y,),
+            (
+                (1,
+        (J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x, g_r0_y,
+                    h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
+                    inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
+                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
+                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x, rrr_link2_mass,
+                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
+                    size_rrr,),
+                ),
+                (1,
+        (J_1_rrr2_zz, J_2_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, g_r0_x_2,
+                    g_r0_y_2, h_1_rrr2_x, h_1_rrr2_y, h_2_rrr2_x, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
+                    inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t,
+                    rrr2_base_frame_xx, rrr2_base_frame_xy, rrr2_base_frame_yx,
+                    rrr2_base_frame_yy, rrr2_base_point_x, rrr2_base_point_y,
+                    rrr2_joint2_offset_x, rrr2_link2_mass, rrr2_platform_joint_offset_x,
+                    rrr2_platform_point_x, rrr2_platform_point_y, size_rrr2,),
+                ),
+            ),
+        ),
+        "potential": (
+        (gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
+            (
+                (1,
+        (Kd_1_rrr_t_2, Kd_1_rrr_t_3, b_rrr_r0_x, b_rrr_r0_y, branch_1_rrr, g_r0_x, g_r0_y,
+                    h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t,
+                    rho2_1_rrr_t, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
+                    rrr_link1_mass, rrr_platform_joint_offset_x, rrr_platform_point_x,
+                    rrr_platform_point_y,),
+                ),
+                (1,
+        (Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, b_rrr2_r0_x, b_rrr2_r0_y, branch_1_rrr2, g_r0_x_2,
+                    g_r0_y_2, h_1_rrr2_x, h_1_rrr2_y, h_2_rrr2_x, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
+                    inv_uu_2_rrr2_t, rho2_1_rrr2_t, rrr2_base_frame_xx, rrr2_base_frame_xy,
+                    rrr2_base_frame_yx, rrr2_base_frame_yy, rrr2_base_point_x, rrr2_base_point_y,
+                    rrr2_joint2_offset_x, rrr2_link1_mass, rrr2_platform_joint_offset_x,
+                    rrr2_platform_point_x, rrr2_platform_point_y,),
+                ),
+            ),
+        ),
+        "condition": (
+        (b_c_x, b_c_y, legs_size,),
+            (
+                (1,
+        (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_rho2_1_rrr_t_4,
+                    inv_rrr_platform_joint_offset_x, inv_size_rrr, inv_uu_2_rrr_t, rho2_1_rrr_t,
+                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
+                    rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
+                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
+                    size_rrr,),
+                ),
+                (1,
+        (Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5, inv_rho2_1_rrr2_t_4,
+                    inv_size_rrr2, inv_uu_2_rrr2_t, rho2_1_rrr2_t, rrr2_base_frame_xx,
+                    rrr2_base_frame_xy, rrr2_base_frame_yx, rrr2_base_frame_yy, rrr2_base_point_x,
+                    rrr2_base_point_y, rrr2_joint2_offset_x, rrr2_platform_joint_offset_x,
+                    rrr2_platform_point_x, rrr2_platform_point_y, size_rrr2,),
+                ),
+            ),
+        ),
     }
-    legs = {
-        "rrr": {
-            "J_1_rrr_zz": np.broadcast_to(J_1_rrr_zz, _rrr),
-            "J_2_rrr_zz": np.broadcast_to(J_2_rrr_zz, _rrr),
-            "Jc_1_rrr_zz": np.broadcast_to(Jc_1_rrr_zz, _rrr),
-            "Kd_1_rrr_t_2": np.broadcast_to(Kd_1_rrr_t_2, _rrr),
-            "Kd_1_rrr_t_3": np.broadcast_to(Kd_1_rrr_t_3, _rrr),
-            "b_rrr_r0_x": np.broadcast_to(b_rrr_r0_x, _rrr),
-            "b_rrr_r0_y": np.broadcast_to(b_rrr_r0_y, _rrr),
-            "branch_1_rrr": np.broadcast_to(branch_1_rrr, _rrr),
-            "d_Gamma_1_rrr_t": np.broadcast_to(d_Gamma_1_rrr_t, _rrr),
-            "d_Gamma_1_rrr_y": np.broadcast_to(d_Gamma_1_rrr_y, _rrr),
-            "d_c_rrr_yy": np.broadcast_to(d_c_rrr_yy, _rrr),
-            "d_phi_2_rrr_t": np.broadcast_to(d_phi_2_rrr_t, _rrr),
-            "g_r0_x": np.broadcast_to(g_r0_x, _rrr),
-            "g_r0_y": np.broadcast_to(g_r0_y, _rrr),
-            "h_1_rrr_x": np.broadcast_to(h_1_rrr_x, _rrr),
-            "h_1_rrr_y": np.broadcast_to(h_1_rrr_y, _rrr),
-            "h_2_rrr_x": np.broadcast_to(h_2_rrr_x, _rrr),
-            "h_2_rrr_y": np.broadcast_to(h_2_rrr_y, _rrr),
-            "inv_Kd_1_rrr_t_5": np.broadcast_to(inv_Kd_1_rrr_t_5, _rrr),
-            "inv_rho2_1_rrr_t_4": np.broadcast_to(inv_rho2_1_rrr_t_4, _rrr),
-            "inv_rrr_platform_joint_offset_x": np.broadcast_to(inv_rrr_platform_joint_offset_x, _rrr),
-            "inv_size_rrr": np.broadcast_to(inv_size_rrr, _rrr),
-            "inv_uu_2_rrr_t": np.broadcast_to(inv_uu_2_rrr_t, _rrr),
-            "rho2_1_rrr_t": np.broadcast_to(rho2_1_rrr_t, _rrr),
-            "rrr_base_frame_xx": np.broadcast_to(rrr_base_frame_xx, _rrr),
-            "rrr_base_frame_xy": np.broadcast_to(rrr_base_frame_xy, _rrr),
-            "rrr_base_frame_yx": np.broadcast_to(rrr_base_frame_yx, _rrr),
-            "rrr_base_frame_yy": np.broadcast_to(rrr_base_frame_yy, _rrr),
-            "rrr_base_point_x": np.broadcast_to(rrr_base_point_x, _rrr),
-            "rrr_base_point_y": np.broadcast_to(rrr_base_point_y, _rrr),
-            "rrr_joint2_offset_x": np.broadcast_to(rrr_joint2_offset_x, _rrr),
-            "rrr_link1_mass": np.broadcast_to(rrr_link1_mass, _rrr),
-            "rrr_link2_mass": np.broadcast_to(rrr_link2_mass, _rrr),
-            "rrr_platform_joint_offset_x": np.broadcast_to(rrr_platform_joint_offset_x, _rrr),
-            "rrr_platform_point_x": np.broadcast_to(rrr_platform_point_x, _rrr),
-            "rrr_platform_point_y": np.broadcast_to(rrr_platform_point_y, _rrr),
-            "size_rrr": np.broadcast_to(size_rrr, _rrr),
-        },
-        "rrr2": {
-            "J_1_rrr2_zz": np.broadcast_to(J_1_rrr2_zz, _rrr2),
-            "J_2_rrr2_zz": np.broadcast_to(J_2_rrr2_zz, _rrr2),
-            "Jc_1_rrr2_zz": np.broadcast_to(Jc_1_rrr2_zz, _rrr2),
-            "Kd_1_rrr2_t_2": np.broadcast_to(Kd_1_rrr2_t_2, _rrr2),
-            "Kd_1_rrr2_t_3": np.broadcast_to(Kd_1_rrr2_t_3, _rrr2),
-            "b_rrr2_r0_x": np.broadcast_to(b_rrr2_r0_x, _rrr2),
-            "b_rrr2_r0_y": np.broadcast_to(b_rrr2_r0_y, _rrr2),
-            "branch_1_rrr2": np.broadcast_to(branch_1_rrr2, _rrr2),
-            "d_Gamma_1_rrr2_t": np.broadcast_to(d_Gamma_1_rrr2_t, _rrr2),
-            "d_Gamma_1_rrr2_y": np.broadcast_to(d_Gamma_1_rrr2_y, _rrr2),
-            "d_c_rrr2_yy": np.broadcast_to(d_c_rrr2_yy, _rrr2),
-            "d_phi_2_rrr2_t": np.broadcast_to(d_phi_2_rrr2_t, _rrr2),
-            "g_r0_x_2": np.broadcast_to(g_r0_x_2, _rrr2),
-            "g_r0_y_2": np.broadcast_to(g_r0_y_2, _rrr2),
-            "h_1_rrr2_x": np.broadcast_to(h_1_rrr2_x, _rrr2),
-            "h_1_rrr2_y": np.broadcast_to(h_1_rrr2_y, _rrr2),
-            "h_2_rrr2_x": np.broadcast_to(h_2_rrr2_x, _rrr2),
-            "h_2_rrr2_y": np.broadcast_to(h_2_rrr2_y, _rrr2),
-            "inv_Kd_1_rrr2_t_5": np.broadcast_to(inv_Kd_1_rrr2_t_5, _rrr2),
-            "inv_rho2_1_rrr2_t_4": np.broadcast_to(inv_rho2_1_rrr2_t_4, _rrr2),
-            "inv_rrr2_platform_joint_offset_x": np.broadcast_to(inv_rrr2_platform_joint_offset_x, _rrr2),
-            "inv_size_rrr2": np.broadcast_to(inv_size_rrr2, _rrr2),
-            "inv_uu_2_rrr2_t": np.broadcast_to(inv_uu_2_rrr2_t, _rrr2),
-            "rho2_1_rrr2_t": np.broadcast_to(rho2_1_rrr2_t, _rrr2),
-            "rrr2_base_frame_xx": np.broadcast_to(rrr2_base_frame_xx, _rrr2),
-            "rrr2_base_frame_xy": np.broadcast_to(rrr2_base_frame_xy, _rrr2),
-            "rrr2_base_frame_yx": np.broadcast_to(rrr2_base_frame_yx, _rrr2),
-            "rrr2_base_frame_yy": np.broadcast_to(rrr2_base_frame_yy, _rrr2),
-            "rrr2_base_point_x": np.broadcast_to(rrr2_base_point_x, _rrr2),
-            "rrr2_base_point_y": np.broadcast_to(rrr2_base_point_y, _rrr2),
-            "rrr2_joint2_offset_x": np.broadcast_to(rrr2_joint2_offset_x, _rrr2),
-            "rrr2_link1_mass": np.broadcast_to(rrr2_link1_mass, _rrr2),
-            "rrr2_link2_mass": np.broadcast_to(rrr2_link2_mass, _rrr2),
-            "rrr2_platform_joint_offset_x": np.broadcast_to(rrr2_platform_joint_offset_x, _rrr2),
-            "rrr2_platform_point_x": np.broadcast_to(rrr2_platform_point_x, _rrr2),
-            "rrr2_platform_point_y": np.broadcast_to(rrr2_platform_point_y, _rrr2),
-            "size_rrr2": np.broadcast_to(size_rrr2, _rrr2),
-        },
-    }
-    return shared, legs
 
 
-class _Part:
-    """A piece of straight-line code: which prepared values it reads, where its results go."""
-
-    def __init__(self, function, names, passed, targets):
-        self.function, self.names, self.passed, self.targets = function, names, passed, targets
+_FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
 
 
-class _LegPart:
-    """A piece of straight-line code run once per leg of a type."""
-
-    def __init__(self, function, leg, names, leg_names, inputs, passed, sums, targets):
-        self.function, self.leg, self.names, self.leg_names = function, leg, names, leg_names
-        self.inputs, self.passed, self.sums, self.targets = inputs, passed, sums, targets
-
-
-class _Plan:
-    """A computation: before the legs, over the legs of each type, after the legs."""
-
-    def __init__(self, inputs, arrays, before, legs, after=None):
-        self.inputs, self.arrays = inputs, arrays
-        self.before, self.legs, self.after = before, legs, after
-
-    def constants(self, p):
-        """Prepared values in the order of the code: floats per leg, and arrays over legs."""
-        if self not in p._cache:
-            shared, legs = p._prepared()
-            tables = []
-            for part in self.legs:
-                columns = [legs[part.leg][n] for n in part.leg_names]
-                rows = [tuple(row) for row in np.array(columns).T.tolist()]
-                count = len(_LEGS[part.leg])
-                tables.append((tuple(shared[n] for n in part.names), rows or [()] * count,
-                               tuple(c[:, None] for c in columns)))
-            before = tuple(shared[n] for n in self.before.names)
-            after = tuple(shared[n] for n in self.after.names) if self.after else ()
-            p._cache[self] = before, tables, after
-        return p._cache[self]
+def _constants(p, name):
+    """Prepared values of a function: floats, and those of each loop over legs for both modes."""
+    if name not in p._cache:
+        shared, loops = p._prepared()[name]
+        rows, columns = [], []
+        for count, values in loops:
+            table = [np.broadcast_to(v, count) for v in values]
+            rows.append([(leg, tuple(float(v[leg]) for v in table)) for leg in range(count)])
+            columns.append([(slice(0, count), tuple(v[:, None] for v in table))])
+        p._cache[name] = tuple(map(float, shared)), rows, columns
+    return p._cache[name]
 
 
 def _sqrt(x):
@@ -744,2969 +869,213 @@ def _sqrt(x):
 
 
 class _Floats:
-    """Functions on Python floats: the way for single states."""
+    """Functions of a state after another, in Python floats: the way for few states."""
 
     sqrt = staticmethod(_sqrt)
     sin = staticmethod(lambda x: float(np.sin(x)))
     cos = staticmethod(lambda x: float(np.cos(x)))
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
     least = staticmethod(lambda x, y: float(np.minimum(x, y)))
+    every = staticmethod(lambda good: good)
+
+    def __init__(self, p, states):
+        self.p, self.states = p, states
+
+    def constants(self, name):
+        """Shared values, and (leg, its values) for every leg of each loop."""
+        return _constants(self.p, name)[:2]
+
+    def zeros(self, size):
+        return [0.0] * size
+
+    def added(self, sums, leg, terms):
+        """Sums over the legs so far."""
+        return [a + b for a, b in zip(sums, terms)]
+
+    def run(self, function, shapes, *vectors):
+        """Arrays (*shape, states) of a function; NaN where the state is impossible."""
+        found = [np.full((self.states, math.prod(shape)), np.nan) for shape in shapes]
+        rows = [v.T.tolist() for v in vectors]
+        for k in range(self.states):
+            try:
+                ok, arrays = function(self, *(row[k] for row in rows))
+            except (ZeroDivisionError, OverflowError):
+                continue
+            if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
+                for a, array in zip(found, arrays):
+                    a[k] = array
+        return [a.T.reshape(*shape, self.states) for a, shape in zip(found, shapes)]
 
 
 class _Arrays:
-    """Functions on arrays over states: the way for batches."""
+    """Functions of many states at once: arrays (states,), and (legs, states)."""
 
     sqrt, sin, cos, atan2, least = np.sqrt, np.sin, np.cos, np.arctan2, np.minimum
 
+    def __init__(self, p, states):
+        self.p, self.states = p, states
 
-_FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
+    def constants(self, name):
+        """Shared values, and (all legs, their values) once for each loop."""
+        shared, _, columns = _constants(self.p, name)
+        return shared, columns
+
+    def zeros(self, size):
+        return np.zeros((size, self.states))
+
+    def every(self, good):
+        """Whether it holds for all legs."""
+        return np.logical_and.reduce(good, axis=0)
+
+    def added(self, sums, legs, terms):
+        """Sums over the legs, all at once."""
+        shape = (legs.stop, self.states)
+        return [np.add.reduce(np.broadcast_to(t, shape), axis=0) for t in terms]
+
+    def run(self, function, shapes, *vectors):
+        """Arrays (*shape, states) of a function; NaN where the state is impossible."""
+        ok, arrays = function(self, *vectors)
+        for a in arrays:
+            ok = ok & np.isfinite(a).all(axis=0)
+        if not np.all(ok):
+            for a in arrays:
+                a[:, ~ok] = np.nan
+        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
 
 
-def _evaluate(plan, p, **vectors):
-    """Arrays of a plan at the vectors that it reads."""
-    p = _given(p)
-    lead = _lead(**vectors)
-    chosen = [np.broadcast_to(vectors[k], lead + vectors[k].shape[-1:]) for k in plan.inputs]
-    return _run(plan, p, *chosen)
+class _Judged(_Arrays):
+    """The same, and why a state is impossible."""
+
+    def __init__(self, p, states):
+        super().__init__(p, states)
+        self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
+
+    def run(self, function, shapes, *vectors):
+        """Arrays (*shape, states) of a function, also where they are nonsense."""
+        (valid, reached, clear), arrays = function(self, *vectors)
+        for code, good in ((3, valid), (1, reached), (2, clear)):
+            self.failed[code] |= ~np.broadcast_to(good, self.states)
+        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+
+    def closed(self, q):
+        """q, noting where the iteration has not converged."""
+        self.failed[4] |= np.isnan(q).any(axis=0)
+        return q
+
+    def status(self, possible):
+        """Status codes; 3 where all is well but some input or result is not finite."""
+        return np.select(list(self.failed.values()), list(self.failed), np.where(possible, 0, 3))
 
 
-def _run(plan, p, *vectors):
-    """Arrays of a plan for one state or many; NaN where the state is impossible."""
-    lead = np.broadcast_shapes(*(v.shape[:-1] for v in vectors))
-    count = int(np.prod(lead, dtype=int))
-    flat = [np.broadcast_to(v, lead + v.shape[-1:]).reshape(count, v.shape[-1]) for v in vectors]
-    outputs = [np.zeros((count, int(np.prod(shape, dtype=int)))) for _, shape in plan.arrays]
-    possible = np.ones(count, dtype=bool)
+def _mode(p, states):
+    """The faster way for so many states."""
+    return _Floats(p, states) if 0 < states <= _FEW else _Arrays(p, states)
+
+
+def _call(function, steps, p, *arguments, mode=_mode):
+    """What the steps give at arguments (name, value, shape of a state, default, rule)."""
+    given = [_argument(function, *a) for a in arguments]
+    shapes = [a[2] for a in arguments]
+    leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
+    lead, p = _lead(leads), _given(p)
+    read = [a[4:] != ("unused",) for a in arguments]
+    if lead or mode is _Judged:
+        results = _many(steps, p, lead, given, shapes, read, mode)
+    else:
+        results = _one(steps, p, given, shapes, read)
+    return results[0] if len(results) == 1 else tuple(results)
+
+
+def _one(steps, p, given, shapes, read):
+    """Results at a single state."""
+    states = [v.reshape(*shape, 1) for v, shape in zip(given, shapes)]
     with np.errstate(all="ignore"):
-        if count <= _FEW:
-            rows = [v.tolist() for v in flat]
-            for i in range(count):
-                possible[i] = _run_one(plan, p, [r[i] for r in rows], [o[i] for o in outputs])
-        else:
-            for i in range(0, count, _BLOCK):
-                block = slice(i, i + _BLOCK)
-                possible[block] = _run_block(
-                    plan, p, [np.ascontiguousarray(v[block].T) for v in flat],
-                    [o[block] for o in outputs])
-        for v in (*flat, *outputs):
-            possible &= np.isfinite(v).all(axis=1)
-    for o in outputs:
-        o[~possible] = np.nan
-    return [o.reshape(lead + shape) for o, (_, shape) in zip(outputs, plan.arrays)]
-
-
-def _run_one(plan, p, vectors, outputs):
-    """One state with Python floats; False if it is impossible."""
-    constants, tables, after = plan.constants(p)
-    try:
-        ok, shared, stores = plan.before.function(constants, *vectors, _Floats)
-        for (array, index), value in zip(plan.before.targets, stores):
-            outputs[array][index] = value
-        sums = []
-        for part, (c, rows, _) in zip(plan.legs, tables):
-            s = [shared[k] for k in part.passed]
-            totals = [0.0] * part.sums
-            for leg, k in enumerate(rows):
-                x = [vectors[plan.inputs.index(v)][index[leg]] for v, index in part.inputs]
-                good, terms, stores = part.function(c, k, x, s, _Floats)
-                ok = ok and good
-                totals = [a + b for a, b in zip(totals, terms)]
-                for (array, index), value in zip(part.targets, stores):
-                    outputs[array][index[leg]] = value
-            sums += totals
-        if plan.after:
-            s = [shared[k] for k in plan.after.passed]
-            good, stores = plan.after.function(after, s, sums, _Floats)
-            ok = ok and good
-            for (array, index), value in zip(plan.after.targets, stores):
-                outputs[array][index] = value
-    except (ZeroDivisionError, OverflowError):
-        return False
-    return ok
-
-
-def _run_block(plan, p, vectors, outputs):
-    """Many states at once, arrays (states,) and (legs, states); which are possible."""
-    constants, tables, after = plan.constants(p)
-    ok, shared, stores = plan.before.function(constants, *vectors, _Arrays)
-    for (array, index), value in zip(plan.before.targets, stores):
-        outputs[array][:, index] = value
-    sums = []
-    for part, (c, _, columns) in zip(plan.legs, tables):
-        legs, states = len(_LEGS[part.leg]), outputs[0].shape[0]
-        x = [vectors[plan.inputs.index(v)][list(index)] for v, index in part.inputs]
-        s = [shared[k] for k in part.passed]
-        good, terms, stores = part.function(c, columns, x, s, _Arrays)
-        ok = ok & np.all(good, axis=0)
-        sums += [np.sum(np.broadcast_to(t, (legs, states)), axis=0) for t in terms]
-        for (array, index), value in zip(part.targets, stores):
-            outputs[array][:, list(index)] = np.broadcast_to(value, (legs, states)).T
-    if plan.after:
-        good, stores = plan.after.function(after, [shared[k] for k in plan.after.passed], sums, _Arrays)
-        ok = ok & good
-        for (array, index), value in zip(plan.after.targets, stores):
-            outputs[array][:, index] = value
-    return ok
-
-
-# dynamics: 216 mul, 139 add, 4 div, 2 sqrt, 0 trig
-def _dynamics_before(c, X, V, f):
-    X_0 = X[0]
-    X_1 = X[1]
-    V_0 = V[0]
-    V_1 = V[1]
-    # X: named entries
-    t_x = X_0
-    t_y = X_1
-    # V: named entries
-    t_dot_x = V_0
-    t_dot_y = V_1
-    ok = True
-    return (ok, (t_x, t_y, t_dot_x, t_dot_y,), (),)
-
-
-def _dynamics_rrr(c, k, x, s, f):
-    sqrt = f.sqrt
-    (
-    J_1_rrr_zz, J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr,
-        d_Gamma_1_rrr_t, d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, g_r0_x, g_r0_y, h_1_rrr_x,
-        h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5, inv_rrr_platform_joint_offset_x,
-        inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
-        rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-        rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y, size_rrr,
-    ) = k
-    t_x, t_y, t_dot_x, t_dot_y = s
-    # (rrr-K1) from the base point to the connection point
-    S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x
-    S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y
-    # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-    Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-    Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-    # (rrr-K3) component along the reference direction
-    px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of the cosine in the equation of joint 1
-    Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-    # (rrr-K4) component across the reference direction
-    py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of the sine in the equation of joint 1
-    Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-    # (rrr-K8) squared amplitude
-    rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-    # (rrr-K9) discriminant
-    disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-    # (rrr-K10) root, with the sign of the branch
-    root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-    # (rrr-K16) from the origin of joint 2 to the connection point
-    x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-    # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-    c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-    # (rrr-K19) sine of the angle of joint 2 from its reference direction
-    s_2_rrr = (
-    inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
-    )
-    # (rrr-V2) from joint 1 to the connection point, along the links
-    r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-    r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-    r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
-    r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-    # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-    inv_rho2_1_rrr = 1.0/rho2_1_rrr
-    c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-    # (rrr-K12) sine of the angle of joint 1 from its reference direction
-    s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-    # (rrr-V5) reciprocal vector 1
-    axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-    axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
-    axis_y_rrr_axes2_in_base_x = (
-    axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
-    )
-    axis_y_rrr_axes2_in_base_y = (
-    axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
-    )
-    inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-    # (rrr-V6) reciprocal vector 2
-    w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x
-    # (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-    d_Gamma_1_rrr_t_2 = d_Gamma_1_rrr_t*r_1_rrr_r0_x
-    d_Gamma_1_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(Jc_1_rrr_zz - d_Gamma_1_rrr_t_2)
-    # (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-    d_Gamma_2_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(J_2_rrr_zz - d_Gamma_1_rrr_t_2)
-    # (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_rrr_xy = d_phi_2_rrr_t + d_Gamma_1_rrr_y*inv_r_1_rrr_r0_y - d_Gamma_1_rrr_y*w_2_rrr_t
-    # (rrr-N36) inertia of the leg at the connection point, without the mass gathered there
-    Q_rrr_t = (
-    d_Gamma_1_rrr_x*inv_r_1_rrr_r0_y + h_2_rrr_y*(w_2_rrr_t - inv_r_1_rrr_r0_y) - d_c_rrr_yy -
-        d_Gamma_2_rrr_x*w_2_rrr_t
-    )
-    Q_rrr_t_2 = 0.5*Q_rrr_t
-    Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_rrr_xy
-    Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_rrr_xy
-    Q_rrr_t_5 = d_c_rrr_yy + 2.0*Q_rrr_t_3*axis_y_rrr_axes2_in_base_y
-    Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x + Q_rrr_t_4*axis_y_rrr_axes2_in_base_y
-    Q_rrr_t_7 = d_c_rrr_yy + 2.0*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x
-    # (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-    g_r1_x = c_1_rrr*g_r0_x + g_r0_y*s_1_rrr
-    g_r1_y = c_1_rrr*g_r0_y - g_r0_x*s_1_rrr
-    # (rrr-V7) rate of joint 1
-    qd_1_rrr = (
-    inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x - axis_y_rrr_axes2_in_base_x*t_dot_y)
-    )
-    # (rrr-V11) angular velocity of link 2
-    omega_2_rrr_z = (
-    inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
-        axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
-    )
-    # (rrr-V10) centripetal tensor of link 1
-    W_1_rrr_t = qd_1_rrr*qd_1_rrr
-    # (rrr-V12) centripetal tensor of link 2
-    W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
-    # (rrr-A4) acceleration of the connection point at zero joint accelerations
-    bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
-    # (rrr-A8) remainder without the acceleration in: acceleration of joint 1
-    qdd_1_rrr_o = bias_rrr_x*inv_r_1_rrr_r0_y
-    # (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-    mu_1_rrr_o_z = J_1_rrr_zz*qdd_1_rrr_o + g_r1_x*h_1_rrr_y - g_r1_y*h_1_rrr_x
-    # (rrr-A17) remainder without the acceleration in: angular acceleration of link 2
-    alpha_2_rrr_o_z = (
-    qdd_1_rrr_o + inv_rrr_platform_joint_offset_x*(W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr -
-        qdd_1_rrr_o*r_1_rrr_r0_x)
-    )
-    # (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-    mu_2_rrr_o_z = (
-    J_2_rrr_zz*alpha_2_rrr_o_z + h_2_rrr_y*(c_2_rrr*g_r1_x - g_r1_y*s_2_rrr) -
-        h_2_rrr_x*(c_2_rrr*g_r1_y + g_r1_x*s_2_rrr)
-    )
-    # (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-    N_1_rrr_o_z = mu_1_rrr_o_z + mu_2_rrr_o_z
-    # (rrr-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-    G_rrr_o_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_o_z
-    # (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    c_rrr_o_x = (
-    W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_o_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_o_t*r_1_rrr_r0_x -
-        N_1_rrr_o_z)
-    )
-    c_rrr_o_y = W_2_rrr_t*h_2_rrr_y - G_rrr_o_t - alpha_2_rrr_o_z*h_2_rrr_x
-    # (rrr-N37) velocity and gravity terms of the leg force
-    U_rrr_in_base_x = -axis_y_rrr_axes2_in_base_x*c_rrr_o_y - axis_y_rrr_axes2_in_base_y*c_rrr_o_x
-    U_rrr_in_base_y = axis_y_rrr_axes2_in_base_x*c_rrr_o_x - axis_y_rrr_axes2_in_base_y*c_rrr_o_y
-    # (rrr-V5) reciprocal vector 1
-    w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
-    w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
-    # (rrr-V6) reciprocal vector 2
-    w_2_rrr_in_base_x = (
-    axis_y_rrr_axes2_in_base_x*inv_rrr_platform_joint_offset_x +
-        axis_y_rrr_axes2_in_base_y*w_2_rrr_t
-    )
-    w_2_rrr_in_base_y = (
-    axis_y_rrr_axes2_in_base_y*inv_rrr_platform_joint_offset_x -
-        axis_y_rrr_axes2_in_base_x*w_2_rrr_t
-    )
-    ok = (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr)
-    return (
-    ok, (Q_rrr_t_5, Q_rrr_t_6, Q_rrr_t_7, U_rrr_in_base_x, U_rrr_in_base_y,), (-w_1_rrr_t,
-        w_1_rrr_t_2, w_2_rrr_in_base_x, w_2_rrr_in_base_y,),
-    )
-
-
-def _dynamics_rrr2(c, k, x, s, f):
-    sqrt = f.sqrt
-    (
-    J_1_rrr2_zz, J_2_rrr2_zz, Jc_1_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2,
-        d_Gamma_1_rrr2_t, d_Gamma_1_rrr2_y, d_c_rrr2_yy, d_phi_2_rrr2_t, g_r0_x_2, g_r0_y_2,
-        h_1_rrr2_x, h_1_rrr2_y, h_2_rrr2_x, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
-        inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t, rrr2_base_frame_xx,
-        rrr2_base_frame_xy, rrr2_base_frame_yx, rrr2_base_frame_yy, rrr2_base_point_x,
-        rrr2_base_point_y, rrr2_joint2_offset_x, rrr2_platform_joint_offset_x,
-        rrr2_platform_point_x, rrr2_platform_point_y, size_rrr2,
-    ) = k
-    t_x, t_y, t_dot_x, t_dot_y = s
-    # (rrr2-K1) from the base point to the connection point
-    S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x
-    S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y
-    # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-    Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y
-    Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
-    # (rrr2-K3) component along the reference direction
-    px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
-    # (rrr2-K6) factor of the cosine in the equation of joint 1
-    Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
-    # (rrr2-K4) component across the reference direction
-    py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
-    # (rrr2-K7) factor of the sine in the equation of joint 1
-    Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
-    # (rrr2-K8) squared amplitude
-    rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
-    # (rrr2-K9) discriminant
-    disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2
-    # (rrr2-K10) root, with the sign of the branch
-    root_1_rrr2 = branch_1_rrr2*sqrt(disc_1_rrr2)
-    # (rrr2-K16) from the origin of joint 2 to the connection point
-    x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x - rrr2_joint2_offset_x
-    # (rrr2-K18) cosine of the angle of joint 2 from its reference direction
-    c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x
-    # (rrr2-K19) sine of the angle of joint 2 from its reference direction
-    s_2_rrr2 = (
-    inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x
-    )
-    # (rrr2-V2) from joint 1 to the connection point, along the links
-    r_1_rrr2_t = rrr2_platform_joint_offset_x*s_2_rrr2
-    r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x
-    r_1_rrr2_r0_x = c_2_rrr2*r_1_rrr2_x + r_1_rrr2_t*s_2_rrr2
-    r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*r_1_rrr2_t
-    # (rrr2-K11) cosine of the angle of joint 1 from its reference direction
-    inv_rho2_1_rrr2 = 1.0/rho2_1_rrr2
-    c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2)
-    # (rrr2-K12) sine of the angle of joint 1 from its reference direction
-    s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2)
-    # (rrr2-V5) reciprocal vector 1
-    axis_y_rrr2_axes2_r1_x = c_1_rrr2*s_2_rrr2 - c_2_rrr2*s_1_rrr2
-    axis_y_rrr2_axes2_r1_y = c_1_rrr2*c_2_rrr2 + s_1_rrr2*s_2_rrr2
-    axis_y_rrr2_axes2_in_base_x = (
-    axis_y_rrr2_axes2_r1_x*rrr2_base_frame_xx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_xy
-    )
-    axis_y_rrr2_axes2_in_base_y = (
-    axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy
-    )
-    inv_r_1_rrr2_r0_y = 1.0/r_1_rrr2_r0_y
-    # (rrr2-V6) reciprocal vector 2
-    w_2_rrr2_t = inv_r_1_rrr2_r0_y*inv_rrr2_platform_joint_offset_x*r_1_rrr2_r0_x
-    # (rrr2-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-    d_Gamma_1_rrr2_t_2 = d_Gamma_1_rrr2_t*r_1_rrr2_r0_x
-    d_Gamma_1_rrr2_x = -h_2_rrr2_y - inv_r_1_rrr2_r0_y*(Jc_1_rrr2_zz - d_Gamma_1_rrr2_t_2)
-    # (rrr2-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-    d_Gamma_2_rrr2_x = -h_2_rrr2_y - inv_r_1_rrr2_r0_y*(J_2_rrr2_zz - d_Gamma_1_rrr2_t_2)
-    # (rrr2-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_rrr2_xy = (
-    d_phi_2_rrr2_t + d_Gamma_1_rrr2_y*inv_r_1_rrr2_r0_y - d_Gamma_1_rrr2_y*w_2_rrr2_t
-    )
-    # (rrr2-N36) inertia of the leg at the connection point, without the mass gathered there
-    Q_rrr2_t = (
-    d_Gamma_1_rrr2_x*inv_r_1_rrr2_r0_y + h_2_rrr2_y*(w_2_rrr2_t - inv_r_1_rrr2_r0_y) - d_c_rrr2_yy
-        - d_Gamma_2_rrr2_x*w_2_rrr2_t
-    )
-    Q_rrr2_t_2 = 0.5*Q_rrr2_t
-    Q_rrr2_t_3 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_y + axis_y_rrr2_axes2_in_base_x*d_c_rrr2_xy
-    Q_rrr2_t_4 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_x - axis_y_rrr2_axes2_in_base_y*d_c_rrr2_xy
-    Q_rrr2_t_5 = d_c_rrr2_yy + 2.0*Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_y
-    Q_rrr2_t_6 = Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_x + Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_y
-    Q_rrr2_t_7 = d_c_rrr2_yy + 2.0*Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_x
-    # (rrr2-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-    g_r1_x_2 = c_1_rrr2*g_r0_x_2 + g_r0_y_2*s_1_rrr2
-    g_r1_y_2 = c_1_rrr2*g_r0_y_2 - g_r0_x_2*s_1_rrr2
-    # (rrr2-V7) rate of joint 1
-    qd_1_rrr2 = (
-    inv_r_1_rrr2_r0_y*(axis_y_rrr2_axes2_in_base_y*t_dot_x - axis_y_rrr2_axes2_in_base_x*t_dot_y)
-    )
-    # (rrr2-V11) angular velocity of link 2
-    omega_2_rrr2_z = (
-    inv_rrr2_platform_joint_offset_x*(axis_y_rrr2_axes2_in_base_x*t_dot_x +
-        axis_y_rrr2_axes2_in_base_y*t_dot_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2
-    )
-    # (rrr2-V10) centripetal tensor of link 1
-    W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2
-    # (rrr2-V12) centripetal tensor of link 2
-    W_2_rrr2_t = omega_2_rrr2_z*omega_2_rrr2_z
-    # (rrr2-A4) acceleration of the connection point at zero joint accelerations
-    bias_rrr2_x = (
-    -W_2_rrr2_t*rrr2_platform_joint_offset_x - W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x
-    )
-    # (rrr2-A8) remainder without the acceleration in: acceleration of joint 1
-    qdd_1_rrr2_o = bias_rrr2_x*inv_r_1_rrr2_r0_y
-    # (rrr2-N24) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-    mu_1_rrr2_o_z = J_1_rrr2_zz*qdd_1_rrr2_o + g_r1_x_2*h_1_rrr2_y - g_r1_y_2*h_1_rrr2_x
-    # (rrr2-A17) remainder without the acceleration in: angular acceleration of link 2
-    alpha_2_rrr2_o_z = (
-    qdd_1_rrr2_o + inv_rrr2_platform_joint_offset_x*(W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2 -
-        qdd_1_rrr2_o*r_1_rrr2_r0_x)
-    )
-    # (rrr2-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-    mu_2_rrr2_o_z = (
-    J_2_rrr2_zz*alpha_2_rrr2_o_z + h_2_rrr2_y*(c_2_rrr2*g_r1_x_2 - g_r1_y_2*s_2_rrr2) -
-        h_2_rrr2_x*(c_2_rrr2*g_r1_y_2 + g_r1_x_2*s_2_rrr2)
-    )
-    # (rrr2-N26) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-    N_1_rrr2_o_z = mu_1_rrr2_o_z + mu_2_rrr2_o_z
-    # (rrr2-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-    G_rrr2_o_t = inv_rrr2_platform_joint_offset_x*mu_2_rrr2_o_z
-    # (rrr2-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    c_rrr2_o_x = (
-    W_2_rrr2_t*h_2_rrr2_x + alpha_2_rrr2_o_z*h_2_rrr2_y -
-        inv_r_1_rrr2_r0_y*(G_rrr2_o_t*r_1_rrr2_r0_x - N_1_rrr2_o_z)
-    )
-    c_rrr2_o_y = W_2_rrr2_t*h_2_rrr2_y - G_rrr2_o_t - alpha_2_rrr2_o_z*h_2_rrr2_x
-    # (rrr2-N37) velocity and gravity terms of the leg force
-    U_rrr2_in_base_x = (
-    -axis_y_rrr2_axes2_in_base_x*c_rrr2_o_y - axis_y_rrr2_axes2_in_base_y*c_rrr2_o_x
-    )
-    U_rrr2_in_base_y = (
-    axis_y_rrr2_axes2_in_base_x*c_rrr2_o_x - axis_y_rrr2_axes2_in_base_y*c_rrr2_o_y
-    )
-    # (rrr2-V5) reciprocal vector 1
-    w_1_rrr2_t = axis_y_rrr2_axes2_in_base_y*inv_r_1_rrr2_r0_y
-    w_1_rrr2_t_2 = axis_y_rrr2_axes2_in_base_x*inv_r_1_rrr2_r0_y
-    ok = (abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2 >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2)
-    return (
-    ok, (Q_rrr2_t_5, Q_rrr2_t_6, Q_rrr2_t_7, U_rrr2_in_base_x, U_rrr2_in_base_y,), (-w_1_rrr2_t,
-        w_1_rrr2_t_2,),
-    )
-
-
-def _dynamics_after(c, s, t, f):
-    Z_p_x, Z_p_y, m_star = c
-    (
-    total_rrr_xx, total_rrr_xy, total_rrr_yy, total_rrr_x, total_rrr_y, total_rrr2_xx,
-        total_rrr2_xy, total_rrr2_yy, total_rrr2_x, total_rrr2_y,
-    ) = t
-    # (M1) translational block of M
-    M_tt_xx = m_star - total_rrr2_xx - total_rrr_xx
-    M_tt_xy = total_rrr2_xy + total_rrr_xy
-    M_tt_yy = m_star - total_rrr2_yy - total_rrr_yy
-    # (M3) translational part of Z
-    Z_t_x = total_rrr2_x + total_rrr_x - Z_p_x
-    Z_t_y = total_rrr2_y + total_rrr_y - Z_p_y
-    ok = True
-    return (ok, (M_tt_xx, M_tt_xy, M_tt_xy, M_tt_yy, Z_t_x, Z_t_y,),)
-
-
-# M: 124 mul, 83 add, 4 div, 2 sqrt, 0 trig
-def _M_before(c, X, f):
-    X_0 = X[0]
-    X_1 = X[1]
-    # X: named entries
-    t_x = X_0
-    t_y = X_1
-    ok = True
-    return (ok, (t_x, t_y,), (),)
-
-
-def _M_rrr(c, k, x, s, f):
-    sqrt = f.sqrt
-    (
-    J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, d_Gamma_1_rrr_t,
-        d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, h_2_rrr_y, inv_Kd_1_rrr_t_5,
-        inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
-        rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-        rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
-        rrr_platform_point_y, size_rrr,
-    ) = k
-    t_x, t_y = s
-    # (rrr-K1) from the base point to the connection point
-    S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x
-    S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y
-    # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-    Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-    Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-    # (rrr-K3) component along the reference direction
-    px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of the cosine in the equation of joint 1
-    Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-    # (rrr-K4) component across the reference direction
-    py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of the sine in the equation of joint 1
-    Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-    # (rrr-K8) squared amplitude
-    rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-    # (rrr-K9) discriminant
-    disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-    # (rrr-K10) root, with the sign of the branch
-    root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-    # (rrr-K16) from the origin of joint 2 to the connection point
-    x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-    # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-    c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-    # (rrr-K19) sine of the angle of joint 2 from its reference direction
-    s_2_rrr = (
-    inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
-    )
-    # (rrr-V2) from joint 1 to the connection point, along the links
-    r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-    r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-    r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
-    r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-    # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-    inv_rho2_1_rrr = 1.0/rho2_1_rrr
-    c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-    # (rrr-K12) sine of the angle of joint 1 from its reference direction
-    s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-    # (rrr-V5) reciprocal vector 1
-    axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-    axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
-    axis_y_rrr_axes2_in_base_x = (
-    axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
-    )
-    axis_y_rrr_axes2_in_base_y = (
-    axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
-    )
-    inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-    # (rrr-V6) reciprocal vector 2
-    w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x
-    # (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-    d_Gamma_1_rrr_t_2 = d_Gamma_1_rrr_t*r_1_rrr_r0_x
-    d_Gamma_1_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(Jc_1_rrr_zz - d_Gamma_1_rrr_t_2)
-    # (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-    d_Gamma_2_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(J_2_rrr_zz - d_Gamma_1_rrr_t_2)
-    # (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_rrr_xy = d_phi_2_rrr_t + d_Gamma_1_rrr_y*inv_r_1_rrr_r0_y - d_Gamma_1_rrr_y*w_2_rrr_t
-    # (rrr-N36) inertia of the leg at the connection point, without the mass gathered there
-    Q_rrr_t = (
-    d_Gamma_1_rrr_x*inv_r_1_rrr_r0_y + h_2_rrr_y*(w_2_rrr_t - inv_r_1_rrr_r0_y) - d_c_rrr_yy -
-        d_Gamma_2_rrr_x*w_2_rrr_t
-    )
-    Q_rrr_t_2 = 0.5*Q_rrr_t
-    Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_rrr_xy
-    Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_rrr_xy
-    Q_rrr_t_5 = d_c_rrr_yy + 2.0*Q_rrr_t_3*axis_y_rrr_axes2_in_base_y
-    Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x + Q_rrr_t_4*axis_y_rrr_axes2_in_base_y
-    Q_rrr_t_7 = d_c_rrr_yy + 2.0*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x
-    ok = (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr)
-    return (ok, (Q_rrr_t_5, Q_rrr_t_6, Q_rrr_t_7,), (),)
-
-
-def _M_rrr2(c, k, x, s, f):
-    sqrt = f.sqrt
-    (
-    J_2_rrr2_zz, Jc_1_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, d_Gamma_1_rrr2_t,
-        d_Gamma_1_rrr2_y, d_c_rrr2_yy, d_phi_2_rrr2_t, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
-        inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t, rrr2_base_frame_xx,
-        rrr2_base_frame_xy, rrr2_base_frame_yx, rrr2_base_frame_yy, rrr2_base_point_x,
-        rrr2_base_point_y, rrr2_joint2_offset_x, rrr2_platform_joint_offset_x,
-        rrr2_platform_point_x, rrr2_platform_point_y, size_rrr2,
-    ) = k
-    t_x, t_y = s
-    # (rrr2-K1) from the base point to the connection point
-    S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x
-    S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y
-    # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-    Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y
-    Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
-    # (rrr2-K3) component along the reference direction
-    px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
-    # (rrr2-K6) factor of the cosine in the equation of joint 1
-    Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
-    # (rrr2-K4) component across the reference direction
-    py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
-    # (rrr2-K7) factor of the sine in the equation of joint 1
-    Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
-    # (rrr2-K8) squared amplitude
-    rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
-    # (rrr2-K9) discriminant
-    disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2
-    # (rrr2-K10) root, with the sign of the branch
-    root_1_rrr2 = branch_1_rrr2*sqrt(disc_1_rrr2)
-    # (rrr2-K16) from the origin of joint 2 to the connection point
-    x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x - rrr2_joint2_offset_x
-    # (rrr2-K18) cosine of the angle of joint 2 from its reference direction
-    c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x
-    # (rrr2-K19) sine of the angle of joint 2 from its reference direction
-    s_2_rrr2 = (
-    inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x
-    )
-    # (rrr2-V2) from joint 1 to the connection point, along the links
-    r_1_rrr2_t = rrr2_platform_joint_offset_x*s_2_rrr2
-    r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x
-    r_1_rrr2_r0_x = c_2_rrr2*r_1_rrr2_x + r_1_rrr2_t*s_2_rrr2
-    r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*r_1_rrr2_t
-    # (rrr2-K11) cosine of the angle of joint 1 from its reference direction
-    inv_rho2_1_rrr2 = 1.0/rho2_1_rrr2
-    c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2)
-    # (rrr2-K12) sine of the angle of joint 1 from its reference direction
-    s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2)
-    # (rrr2-V5) reciprocal vector 1
-    axis_y_rrr2_axes2_r1_x = c_1_rrr2*s_2_rrr2 - c_2_rrr2*s_1_rrr2
-    axis_y_rrr2_axes2_r1_y = c_1_rrr2*c_2_rrr2 + s_1_rrr2*s_2_rrr2
-    axis_y_rrr2_axes2_in_base_x = (
-    axis_y_rrr2_axes2_r1_x*rrr2_base_frame_xx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_xy
-    )
-    axis_y_rrr2_axes2_in_base_y = (
-    axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy
-    )
-    inv_r_1_rrr2_r0_y = 1.0/r_1_rrr2_r0_y
-    # (rrr2-V6) reciprocal vector 2
-    w_2_rrr2_t = inv_r_1_rrr2_r0_y*inv_rrr2_platform_joint_offset_x*r_1_rrr2_r0_x
-    # (rrr2-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-    d_Gamma_1_rrr2_t_2 = d_Gamma_1_rrr2_t*r_1_rrr2_r0_x
-    d_Gamma_1_rrr2_x = -h_2_rrr2_y - inv_r_1_rrr2_r0_y*(Jc_1_rrr2_zz - d_Gamma_1_rrr2_t_2)
-    # (rrr2-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-    d_Gamma_2_rrr2_x = -h_2_rrr2_y - inv_r_1_rrr2_r0_y*(J_2_rrr2_zz - d_Gamma_1_rrr2_t_2)
-    # (rrr2-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_rrr2_xy = (
-    d_phi_2_rrr2_t + d_Gamma_1_rrr2_y*inv_r_1_rrr2_r0_y - d_Gamma_1_rrr2_y*w_2_rrr2_t
-    )
-    # (rrr2-N36) inertia of the leg at the connection point, without the mass gathered there
-    Q_rrr2_t = (
-    d_Gamma_1_rrr2_x*inv_r_1_rrr2_r0_y + h_2_rrr2_y*(w_2_rrr2_t - inv_r_1_rrr2_r0_y) - d_c_rrr2_yy
-        - d_Gamma_2_rrr2_x*w_2_rrr2_t
-    )
-    Q_rrr2_t_2 = 0.5*Q_rrr2_t
-    Q_rrr2_t_3 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_y + axis_y_rrr2_axes2_in_base_x*d_c_rrr2_xy
-    Q_rrr2_t_4 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_x - axis_y_rrr2_axes2_in_base_y*d_c_rrr2_xy
-    Q_rrr2_t_5 = d_c_rrr2_yy + 2.0*Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_y
-    Q_rrr2_t_6 = Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_x + Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_y
-    Q_rrr2_t_7 = d_c_rrr2_yy + 2.0*Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_x
-    ok = (abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2 >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2)
-    return (ok, (Q_rrr2_t_5, Q_rrr2_t_6, Q_rrr2_t_7,), (),)
-
-
-def _M_after(c, s, t, f):
-    m_star, = c
-    total_rrr_xx, total_rrr_xy, total_rrr_yy, total_rrr2_xx, total_rrr2_xy, total_rrr2_yy = t
-    # (M1) translational block of M
-    M_tt_xx = m_star - total_rrr2_xx - total_rrr_xx
-    M_tt_xy = total_rrr2_xy + total_rrr_xy
-    M_tt_yy = m_star - total_rrr2_yy - total_rrr_yy
-    ok = True
-    return (ok, (M_tt_xx, M_tt_xy, M_tt_xy, M_tt_yy,),)
-
-
-# Z: 166 mul, 96 add, 4 div, 2 sqrt, 0 trig
-def _Z_before(c, X, V, f):
-    X_0 = X[0]
-    X_1 = X[1]
-    V_0 = V[0]
-    V_1 = V[1]
-    # X: named entries
-    t_x = X_0
-    t_y = X_1
-    # V: named entries
-    t_dot_x = V_0
-    t_dot_y = V_1
-    ok = True
-    return (ok, (t_x, t_y, t_dot_x, t_dot_y,), (),)
-
-
-def _Z_rrr(c, k, x, s, f):
-    sqrt = f.sqrt
-    (
-    J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x, g_r0_y, h_1_rrr_x,
-        h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5, inv_rrr_platform_joint_offset_x,
-        inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
-        rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-        rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y, size_rrr,
-    ) = k
-    t_x, t_y, t_dot_x, t_dot_y = s
-    # (rrr-K1) from the base point to the connection point
-    S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x
-    S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y
-    # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-    Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-    Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-    # (rrr-K3) component along the reference direction
-    px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of the cosine in the equation of joint 1
-    Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-    # (rrr-K4) component across the reference direction
-    py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of the sine in the equation of joint 1
-    Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-    # (rrr-K8) squared amplitude
-    rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-    # (rrr-K9) discriminant
-    disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-    # (rrr-K10) root, with the sign of the branch
-    root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-    # (rrr-K16) from the origin of joint 2 to the connection point
-    x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-    # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-    c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-    # (rrr-K19) sine of the angle of joint 2 from its reference direction
-    s_2_rrr = (
-    inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
-    )
-    # (rrr-V2) from joint 1 to the connection point, along the links
-    r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-    r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-    r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
-    r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-    # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-    inv_rho2_1_rrr = 1.0/rho2_1_rrr
-    c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-    # (rrr-K12) sine of the angle of joint 1 from its reference direction
-    s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-    # (rrr-V5) reciprocal vector 1
-    axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-    axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
-    axis_y_rrr_axes2_in_base_x = (
-    axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
-    )
-    axis_y_rrr_axes2_in_base_y = (
-    axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
-    )
-    inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-    # (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-    g_r1_x = c_1_rrr*g_r0_x + g_r0_y*s_1_rrr
-    g_r1_y = c_1_rrr*g_r0_y - g_r0_x*s_1_rrr
-    # (rrr-V7) rate of joint 1
-    qd_1_rrr = (
-    inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x - axis_y_rrr_axes2_in_base_x*t_dot_y)
-    )
-    # (rrr-V11) angular velocity of link 2
-    omega_2_rrr_z = (
-    inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
-        axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
-    )
-    # (rrr-V10) centripetal tensor of link 1
-    W_1_rrr_t = qd_1_rrr*qd_1_rrr
-    # (rrr-V12) centripetal tensor of link 2
-    W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
-    # (rrr-A4) acceleration of the connection point at zero joint accelerations
-    bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
-    # (rrr-A8) remainder without the acceleration in: acceleration of joint 1
-    qdd_1_rrr_o = bias_rrr_x*inv_r_1_rrr_r0_y
-    # (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-    mu_1_rrr_o_z = J_1_rrr_zz*qdd_1_rrr_o + g_r1_x*h_1_rrr_y - g_r1_y*h_1_rrr_x
-    # (rrr-A17) remainder without the acceleration in: angular acceleration of link 2
-    alpha_2_rrr_o_z = (
-    qdd_1_rrr_o + inv_rrr_platform_joint_offset_x*(W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr -
-        qdd_1_rrr_o*r_1_rrr_r0_x)
-    )
-    # (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-    mu_2_rrr_o_z = (
-    J_2_rrr_zz*alpha_2_rrr_o_z + h_2_rrr_y*(c_2_rrr*g_r1_x - g_r1_y*s_2_rrr) -
-        h_2_rrr_x*(c_2_rrr*g_r1_y + g_r1_x*s_2_rrr)
-    )
-    # (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-    N_1_rrr_o_z = mu_1_rrr_o_z + mu_2_rrr_o_z
-    # (rrr-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-    G_rrr_o_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_o_z
-    # (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    c_rrr_o_x = (
-    W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_o_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_o_t*r_1_rrr_r0_x -
-        N_1_rrr_o_z)
-    )
-    c_rrr_o_y = W_2_rrr_t*h_2_rrr_y - G_rrr_o_t - alpha_2_rrr_o_z*h_2_rrr_x
-    # (rrr-N37) velocity and gravity terms of the leg force
-    U_rrr_in_base_x = -axis_y_rrr_axes2_in_base_x*c_rrr_o_y - axis_y_rrr_axes2_in_base_y*c_rrr_o_x
-    U_rrr_in_base_y = axis_y_rrr_axes2_in_base_x*c_rrr_o_x - axis_y_rrr_axes2_in_base_y*c_rrr_o_y
-    ok = (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr)
-    return (ok, (U_rrr_in_base_x, U_rrr_in_base_y,), (),)
-
-
-def _Z_rrr2(c, k, x, s, f):
-    sqrt = f.sqrt
-    (
-    J_1_rrr2_zz, J_2_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, g_r0_x_2, g_r0_y_2,
-        h_1_rrr2_x, h_1_rrr2_y, h_2_rrr2_x, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
-        inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t, rrr2_base_frame_xx,
-        rrr2_base_frame_xy, rrr2_base_frame_yx, rrr2_base_frame_yy, rrr2_base_point_x,
-        rrr2_base_point_y, rrr2_joint2_offset_x, rrr2_platform_joint_offset_x,
-        rrr2_platform_point_x, rrr2_platform_point_y, size_rrr2,
-    ) = k
-    t_x, t_y, t_dot_x, t_dot_y = s
-    # (rrr2-K1) from the base point to the connection point
-    S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x
-    S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y
-    # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-    Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y
-    Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
-    # (rrr2-K3) component along the reference direction
-    px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
-    # (rrr2-K6) factor of the cosine in the equation of joint 1
-    Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
-    # (rrr2-K4) component across the reference direction
-    py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
-    # (rrr2-K7) factor of the sine in the equation of joint 1
-    Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
-    # (rrr2-K8) squared amplitude
-    rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
-    # (rrr2-K9) discriminant
-    disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2
-    # (rrr2-K10) root, with the sign of the branch
-    root_1_rrr2 = branch_1_rrr2*sqrt(disc_1_rrr2)
-    # (rrr2-K16) from the origin of joint 2 to the connection point
-    x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x - rrr2_joint2_offset_x
-    # (rrr2-K18) cosine of the angle of joint 2 from its reference direction
-    c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x
-    # (rrr2-K19) sine of the angle of joint 2 from its reference direction
-    s_2_rrr2 = (
-    inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x
-    )
-    # (rrr2-V2) from joint 1 to the connection point, along the links
-    r_1_rrr2_t = rrr2_platform_joint_offset_x*s_2_rrr2
-    r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x
-    r_1_rrr2_r0_x = c_2_rrr2*r_1_rrr2_x + r_1_rrr2_t*s_2_rrr2
-    r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*r_1_rrr2_t
-    # (rrr2-K11) cosine of the angle of joint 1 from its reference direction
-    inv_rho2_1_rrr2 = 1.0/rho2_1_rrr2
-    c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2)
-    # (rrr2-K12) sine of the angle of joint 1 from its reference direction
-    s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2)
-    # (rrr2-V5) reciprocal vector 1
-    axis_y_rrr2_axes2_r1_x = c_1_rrr2*s_2_rrr2 - c_2_rrr2*s_1_rrr2
-    axis_y_rrr2_axes2_r1_y = c_1_rrr2*c_2_rrr2 + s_1_rrr2*s_2_rrr2
-    axis_y_rrr2_axes2_in_base_x = (
-    axis_y_rrr2_axes2_r1_x*rrr2_base_frame_xx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_xy
-    )
-    axis_y_rrr2_axes2_in_base_y = (
-    axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy
-    )
-    inv_r_1_rrr2_r0_y = 1.0/r_1_rrr2_r0_y
-    # (rrr2-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-    g_r1_x_2 = c_1_rrr2*g_r0_x_2 + g_r0_y_2*s_1_rrr2
-    g_r1_y_2 = c_1_rrr2*g_r0_y_2 - g_r0_x_2*s_1_rrr2
-    # (rrr2-V7) rate of joint 1
-    qd_1_rrr2 = (
-    inv_r_1_rrr2_r0_y*(axis_y_rrr2_axes2_in_base_y*t_dot_x - axis_y_rrr2_axes2_in_base_x*t_dot_y)
-    )
-    # (rrr2-V11) angular velocity of link 2
-    omega_2_rrr2_z = (
-    inv_rrr2_platform_joint_offset_x*(axis_y_rrr2_axes2_in_base_x*t_dot_x +
-        axis_y_rrr2_axes2_in_base_y*t_dot_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2
-    )
-    # (rrr2-V10) centripetal tensor of link 1
-    W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2
-    # (rrr2-V12) centripetal tensor of link 2
-    W_2_rrr2_t = omega_2_rrr2_z*omega_2_rrr2_z
-    # (rrr2-A4) acceleration of the connection point at zero joint accelerations
-    bias_rrr2_x = (
-    -W_2_rrr2_t*rrr2_platform_joint_offset_x - W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x
-    )
-    # (rrr2-A8) remainder without the acceleration in: acceleration of joint 1
-    qdd_1_rrr2_o = bias_rrr2_x*inv_r_1_rrr2_r0_y
-    # (rrr2-N24) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-    mu_1_rrr2_o_z = J_1_rrr2_zz*qdd_1_rrr2_o + g_r1_x_2*h_1_rrr2_y - g_r1_y_2*h_1_rrr2_x
-    # (rrr2-A17) remainder without the acceleration in: angular acceleration of link 2
-    alpha_2_rrr2_o_z = (
-    qdd_1_rrr2_o + inv_rrr2_platform_joint_offset_x*(W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2 -
-        qdd_1_rrr2_o*r_1_rrr2_r0_x)
-    )
-    # (rrr2-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-    mu_2_rrr2_o_z = (
-    J_2_rrr2_zz*alpha_2_rrr2_o_z + h_2_rrr2_y*(c_2_rrr2*g_r1_x_2 - g_r1_y_2*s_2_rrr2) -
-        h_2_rrr2_x*(c_2_rrr2*g_r1_y_2 + g_r1_x_2*s_2_rrr2)
-    )
-    # (rrr2-N26) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-    N_1_rrr2_o_z = mu_1_rrr2_o_z + mu_2_rrr2_o_z
-    # (rrr2-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-    G_rrr2_o_t = inv_rrr2_platform_joint_offset_x*mu_2_rrr2_o_z
-    # (rrr2-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    c_rrr2_o_x = (
-    W_2_rrr2_t*h_2_rrr2_x + alpha_2_rrr2_o_z*h_2_rrr2_y -
-        inv_r_1_rrr2_r0_y*(G_rrr2_o_t*r_1_rrr2_r0_x - N_1_rrr2_o_z)
-    )
-    c_rrr2_o_y = W_2_rrr2_t*h_2_rrr2_y - G_rrr2_o_t - alpha_2_rrr2_o_z*h_2_rrr2_x
-    # (rrr2-N37) velocity and gravity terms of the leg force
-    U_rrr2_in_base_x = (
-    -axis_y_rrr2_axes2_in_base_x*c_rrr2_o_y - axis_y_rrr2_axes2_in_base_y*c_rrr2_o_x
-    )
-    U_rrr2_in_base_y = (
-    axis_y_rrr2_axes2_in_base_x*c_rrr2_o_x - axis_y_rrr2_axes2_in_base_y*c_rrr2_o_y
-    )
-    ok = (abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2 >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2)
-    return (ok, (U_rrr2_in_base_x, U_rrr2_in_base_y,), (),)
-
-
-def _Z_after(c, s, t, f):
-    Z_p_x, Z_p_y = c
-    total_rrr_x, total_rrr_y, total_rrr2_x, total_rrr2_y = t
-    # (M3) translational part of Z
-    Z_t_x = total_rrr2_x + total_rrr_x - Z_p_x
-    Z_t_y = total_rrr2_y + total_rrr_y - Z_p_y
-    ok = True
-    return (ok, (Z_t_x, Z_t_y,),)
-
-
-# H: 90 mul, 43 add, 4 div, 2 sqrt, 0 trig
-def _H_before(c, X, f):
-    X_0 = X[0]
-    X_1 = X[1]
-    # X: named entries
-    t_x = X_0
-    t_y = X_1
-    ok = True
-    return (ok, (t_x, t_y,), (),)
-
-
-def _H_rrr(c, k, x, s, f):
-    sqrt = f.sqrt
-    (
-    Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_rrr_platform_joint_offset_x,
-        inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
-        rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-        rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y, size_rrr,
-    ) = k
-    t_x, t_y = s
-    # (rrr-K1) from the base point to the connection point
-    S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x
-    S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y
-    # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-    Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-    Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-    # (rrr-K3) component along the reference direction
-    px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of the cosine in the equation of joint 1
-    Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-    # (rrr-K4) component across the reference direction
-    py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of the sine in the equation of joint 1
-    Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-    # (rrr-K8) squared amplitude
-    rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-    # (rrr-K9) discriminant
-    disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-    # (rrr-K10) root, with the sign of the branch
-    root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-    # (rrr-K16) from the origin of joint 2 to the connection point
-    x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-    # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-    c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-    # (rrr-K19) sine of the angle of joint 2 from its reference direction
-    s_2_rrr = (
-    inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
-    )
-    # (rrr-V2) from joint 1 to the connection point, along the links
-    r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-    r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-    r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-    # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-    inv_rho2_1_rrr = 1.0/rho2_1_rrr
-    c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-    # (rrr-K12) sine of the angle of joint 1 from its reference direction
-    s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-    # (rrr-V5) reciprocal vector 1
-    axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-    axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
-    axis_y_rrr_axes2_in_base_x = (
-    axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
-    )
-    axis_y_rrr_axes2_in_base_y = (
-    axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
-    )
-    inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-    # (rrr-V6) reciprocal vector 2
-    w_2_rrr_t = (
-    inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*(c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr)
-    )
-    # (rrr-V5) reciprocal vector 1
-    w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
-    w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
-    # (rrr-V6) reciprocal vector 2
-    w_2_rrr_in_base_x = (
-    axis_y_rrr_axes2_in_base_x*inv_rrr_platform_joint_offset_x +
-        axis_y_rrr_axes2_in_base_y*w_2_rrr_t
-    )
-    w_2_rrr_in_base_y = (
-    axis_y_rrr_axes2_in_base_y*inv_rrr_platform_joint_offset_x -
-        axis_y_rrr_axes2_in_base_x*w_2_rrr_t
-    )
-    ok = (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr)
-    return (ok, (), (-w_1_rrr_t, w_1_rrr_t_2, w_2_rrr_in_base_x, w_2_rrr_in_base_y,),)
-
-
-def _H_rrr2(c, k, x, s, f):
-    sqrt = f.sqrt
-    (
-    Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5, inv_uu_2_rrr2_t,
-        rho2_1_rrr2_t, rrr2_base_frame_xx, rrr2_base_frame_xy, rrr2_base_frame_yx,
-        rrr2_base_frame_yy, rrr2_base_point_x, rrr2_base_point_y, rrr2_joint2_offset_x,
-        rrr2_platform_joint_offset_x, rrr2_platform_point_x, rrr2_platform_point_y, size_rrr2,
-    ) = k
-    t_x, t_y = s
-    # (rrr2-K1) from the base point to the connection point
-    S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x
-    S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y
-    # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-    Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y
-    Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
-    # (rrr2-K3) component along the reference direction
-    px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
-    # (rrr2-K6) factor of the cosine in the equation of joint 1
-    Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
-    # (rrr2-K4) component across the reference direction
-    py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
-    # (rrr2-K7) factor of the sine in the equation of joint 1
-    Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
-    # (rrr2-K8) squared amplitude
-    rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
-    # (rrr2-K9) discriminant
-    disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2
-    # (rrr2-K10) root, with the sign of the branch
-    root_1_rrr2 = branch_1_rrr2*sqrt(disc_1_rrr2)
-    # (rrr2-K16) from the origin of joint 2 to the connection point
-    x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x - rrr2_joint2_offset_x
-    # (rrr2-K18) cosine of the angle of joint 2 from its reference direction
-    c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x
-    # (rrr2-K19) sine of the angle of joint 2 from its reference direction
-    s_2_rrr2 = (
-    inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x
-    )
-    # (rrr2-V2) from joint 1 to the connection point, along the links
-    r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x
-    r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*rrr2_platform_joint_offset_x*s_2_rrr2
-    # (rrr2-K11) cosine of the angle of joint 1 from its reference direction
-    inv_rho2_1_rrr2 = 1.0/rho2_1_rrr2
-    c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2)
-    # (rrr2-K12) sine of the angle of joint 1 from its reference direction
-    s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2)
-    # (rrr2-V5) reciprocal vector 1
-    axis_y_rrr2_axes2_r1_x = c_1_rrr2*s_2_rrr2 - c_2_rrr2*s_1_rrr2
-    axis_y_rrr2_axes2_r1_y = c_1_rrr2*c_2_rrr2 + s_1_rrr2*s_2_rrr2
-    inv_r_1_rrr2_r0_y = 1.0/r_1_rrr2_r0_y
-    w_1_rrr2_t = (
-    inv_r_1_rrr2_r0_y*(axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx +
-        axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy)
-    )
-    w_1_rrr2_t_2 = (
-    inv_r_1_rrr2_r0_y*(axis_y_rrr2_axes2_r1_x*rrr2_base_frame_xx +
-        axis_y_rrr2_axes2_r1_y*rrr2_base_frame_xy)
-    )
-    ok = (abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2 >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2)
-    return (ok, (), (-w_1_rrr2_t, w_1_rrr2_t_2,),)
-
-
-# required: 186 mul, 112 add, 4 div, 2 sqrt, 0 trig
-def _required_before(c, X, V, A, f):
-    gravity_x, gravity_y, m_star = c
-    X_0 = X[0]
-    X_1 = X[1]
-    V_0 = V[0]
-    V_1 = V[1]
-    A_0 = A[0]
-    A_1 = A[1]
-    # X: named entries
-    t_x = X_0
-    t_y = X_1
-    # V: named entries
-    t_dot_x = V_0
-    t_dot_y = V_1
-    # A: named entries
-    t_ddot_x = A_0
-    t_ddot_y = A_1
-    # (E1) acceleration of the platform origin, less gravity
-    a_t_x = t_ddot_x - gravity_x
-    a_t_y = t_ddot_y - gravity_y
-    # (E2) inertia force of the platform less its weight
-    f_p_x = a_t_x*m_star
-    f_p_y = a_t_y*m_star
-    ok = True
-    return (ok, (t_x, t_y, t_dot_x, t_dot_y, t_ddot_x, t_ddot_y, f_p_x, f_p_y,), (),)
-
-
-def _required_rrr(c, k, x, s, f):
-    sqrt = f.sqrt
-    gravity_x, gravity_y = c
-    (
-    J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x, g_r0_y, h_1_rrr_x,
-        h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5, inv_rrr_platform_joint_offset_x,
-        inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
-        rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-        rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y, size_rrr,
-    ) = k
-    t_x, t_y, t_dot_x, t_dot_y, t_ddot_x, t_ddot_y = s
-    # (rrr-K1) from the base point to the connection point
-    S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x
-    S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y
-    # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-    Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-    Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-    # (rrr-K3) component along the reference direction
-    px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of the cosine in the equation of joint 1
-    Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-    # (rrr-K4) component across the reference direction
-    py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of the sine in the equation of joint 1
-    Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-    # (rrr-K8) squared amplitude
-    rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-    # (rrr-K9) discriminant
-    disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-    # (rrr-K10) root, with the sign of the branch
-    root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-    # (rrr-K16) from the origin of joint 2 to the connection point
-    x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-    # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-    c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-    # (rrr-K19) sine of the angle of joint 2 from its reference direction
-    s_2_rrr = (
-    inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
-    )
-    # (rrr-V2) from joint 1 to the connection point, along the links
-    r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-    r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-    r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
-    r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-    # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-    inv_rho2_1_rrr = 1.0/rho2_1_rrr
-    c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-    # (rrr-K12) sine of the angle of joint 1 from its reference direction
-    s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-    # (rrr-V5) reciprocal vector 1
-    axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-    axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
-    axis_y_rrr_axes2_in_base_x = (
-    axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
-    )
-    axis_y_rrr_axes2_in_base_y = (
-    axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
-    )
-    inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-    # (rrr-V6) reciprocal vector 2
-    w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x
-    # (rrr-V7) rate of joint 1
-    qd_1_rrr = (
-    inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x - axis_y_rrr_axes2_in_base_x*t_dot_y)
-    )
-    # (rrr-V11) angular velocity of link 2
-    omega_2_rrr_z = (
-    inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
-        axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
-    )
-    # (rrr-V10) centripetal tensor of link 1
-    W_1_rrr_t = qd_1_rrr*qd_1_rrr
-    # (rrr-V12) centripetal tensor of link 2
-    W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
-    # (rrr-A4) acceleration of the connection point at zero joint accelerations
-    bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
-    # (rrr-V5) reciprocal vector 1
-    w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
-    w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
-    # (rrr-V6) reciprocal vector 2
-    w_2_rrr_in_base_x = (
-    axis_y_rrr_axes2_in_base_x*inv_rrr_platform_joint_offset_x +
-        axis_y_rrr_axes2_in_base_y*w_2_rrr_t
-    )
-    w_2_rrr_in_base_y = (
-    axis_y_rrr_axes2_in_base_y*inv_rrr_platform_joint_offset_x -
-        axis_y_rrr_axes2_in_base_x*w_2_rrr_t
-    )
-    # (rrr-A2) acceleration of the connection point
-    S_ddot_rrr_tip_x = axis_y_rrr_axes2_in_base_y*t_ddot_x - axis_y_rrr_axes2_in_base_x*t_ddot_y
-    S_ddot_rrr_tip_y = axis_y_rrr_axes2_in_base_x*t_ddot_x + axis_y_rrr_axes2_in_base_y*t_ddot_y
-    # (rrr-A5) acceleration of the connection point left to the joint accelerations
-    rel_rrr_x = S_ddot_rrr_tip_x - bias_rrr_x
-    rel_rrr_y = S_ddot_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
-    # (rrr-A7) acceleration of joint 1
-    qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x
-    # (rrr-N3) acceleration of the reference point of link 2, less gravity
-    acc_2_rrr_x = (
-    S_ddot_rrr_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y - axis_y_rrr_axes2_in_base_y*gravity_x
-    )
-    acc_2_rrr_y = (
-    S_ddot_rrr_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x - axis_y_rrr_axes2_in_base_y*gravity_y
-    )
-    # (rrr-N23) inertia moment of the links that turn with link 1, about their reference points
-    mu_1_rrr_z = (
-    h_1_rrr_y*(c_1_rrr*g_r0_x + g_r0_y*s_1_rrr) - J_1_rrr_zz*qdd_1_rrr - h_1_rrr_x*(c_1_rrr*g_r0_y
-        - g_r0_x*s_1_rrr)
-    )
-    # (rrr-A15) angular acceleration of link 2
-    alpha_2_rrr_z = (
-    inv_rrr_platform_joint_offset_x*(rel_rrr_y + qdd_1_rrr*r_1_rrr_r0_x) - qdd_1_rrr
-    )
-    # (rrr-N16) inertia moment of the links that turn with link 2, about their reference points
-    mu_2_rrr_z = J_2_rrr_zz*alpha_2_rrr_z + acc_2_rrr_y*h_2_rrr_x - acc_2_rrr_x*h_2_rrr_y
-    # (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-    N_1_rrr_z = mu_1_rrr_z + mu_2_rrr_z
-    # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
-    G_rrr_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_z
-    # (rrr-N33) leg force on the platform without actuation and without the mass at the connection point
-    c_rrr_x = (
-    W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_t*r_1_rrr_r0_x -
-        N_1_rrr_z)
-    )
-    c_rrr_y = W_2_rrr_t*h_2_rrr_y - G_rrr_t - alpha_2_rrr_z*h_2_rrr_x
-    c_rrr_in_base_x = axis_y_rrr_axes2_in_base_x*c_rrr_y + axis_y_rrr_axes2_in_base_y*c_rrr_x
-    c_rrr_in_base_y = axis_y_rrr_axes2_in_base_y*c_rrr_y - axis_y_rrr_axes2_in_base_x*c_rrr_x
-    ok = (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr)
-    return (
-    ok, (c_rrr_in_base_x, c_rrr_in_base_y,), (-w_1_rrr_t, w_1_rrr_t_2, w_2_rrr_in_base_x,
-        w_2_rrr_in_base_y,),
-    )
-
-
-def _required_rrr2(c, k, x, s, f):
-    sqrt = f.sqrt
-    gravity_x, gravity_y = c
-    (
-    J_1_rrr2_zz, J_2_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, g_r0_x_2, g_r0_y_2,
-        h_1_rrr2_x, h_1_rrr2_y, h_2_rrr2_x, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
-        inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t, rrr2_base_frame_xx,
-        rrr2_base_frame_xy, rrr2_base_frame_yx, rrr2_base_frame_yy, rrr2_base_point_x,
-        rrr2_base_point_y, rrr2_joint2_offset_x, rrr2_platform_joint_offset_x,
-        rrr2_platform_point_x, rrr2_platform_point_y, size_rrr2,
-    ) = k
-    t_x, t_y, t_dot_x, t_dot_y, t_ddot_x, t_ddot_y = s
-    # (rrr2-K1) from the base point to the connection point
-    S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x
-    S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y
-    # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-    Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y
-    Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
-    # (rrr2-K3) component along the reference direction
-    px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
-    # (rrr2-K6) factor of the cosine in the equation of joint 1
-    Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
-    # (rrr2-K4) component across the reference direction
-    py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
-    # (rrr2-K7) factor of the sine in the equation of joint 1
-    Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
-    # (rrr2-K8) squared amplitude
-    rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
-    # (rrr2-K9) discriminant
-    disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2
-    # (rrr2-K10) root, with the sign of the branch
-    root_1_rrr2 = branch_1_rrr2*sqrt(disc_1_rrr2)
-    # (rrr2-K16) from the origin of joint 2 to the connection point
-    x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x - rrr2_joint2_offset_x
-    # (rrr2-K18) cosine of the angle of joint 2 from its reference direction
-    c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x
-    # (rrr2-K19) sine of the angle of joint 2 from its reference direction
-    s_2_rrr2 = (
-    inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x
-    )
-    # (rrr2-V2) from joint 1 to the connection point, along the links
-    r_1_rrr2_t = rrr2_platform_joint_offset_x*s_2_rrr2
-    r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x
-    r_1_rrr2_r0_x = c_2_rrr2*r_1_rrr2_x + r_1_rrr2_t*s_2_rrr2
-    r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*r_1_rrr2_t
-    # (rrr2-K11) cosine of the angle of joint 1 from its reference direction
-    inv_rho2_1_rrr2 = 1.0/rho2_1_rrr2
-    c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2)
-    # (rrr2-K12) sine of the angle of joint 1 from its reference direction
-    s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2)
-    # (rrr2-V5) reciprocal vector 1
-    axis_y_rrr2_axes2_r1_x = c_1_rrr2*s_2_rrr2 - c_2_rrr2*s_1_rrr2
-    axis_y_rrr2_axes2_r1_y = c_1_rrr2*c_2_rrr2 + s_1_rrr2*s_2_rrr2
-    axis_y_rrr2_axes2_in_base_x = (
-    axis_y_rrr2_axes2_r1_x*rrr2_base_frame_xx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_xy
-    )
-    axis_y_rrr2_axes2_in_base_y = (
-    axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy
-    )
-    inv_r_1_rrr2_r0_y = 1.0/r_1_rrr2_r0_y
-    # (rrr2-V7) rate of joint 1
-    qd_1_rrr2 = (
-    inv_r_1_rrr2_r0_y*(axis_y_rrr2_axes2_in_base_y*t_dot_x - axis_y_rrr2_axes2_in_base_x*t_dot_y)
-    )
-    # (rrr2-V11) angular velocity of link 2
-    omega_2_rrr2_z = (
-    inv_rrr2_platform_joint_offset_x*(axis_y_rrr2_axes2_in_base_x*t_dot_x +
-        axis_y_rrr2_axes2_in_base_y*t_dot_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2
-    )
-    # (rrr2-V10) centripetal tensor of link 1
-    W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2
-    # (rrr2-V12) centripetal tensor of link 2
-    W_2_rrr2_t = omega_2_rrr2_z*omega_2_rrr2_z
-    # (rrr2-A4) acceleration of the connection point at zero joint accelerations
-    bias_rrr2_x = (
-    -W_2_rrr2_t*rrr2_platform_joint_offset_x - W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x
-    )
-    # (rrr2-V5) reciprocal vector 1
-    w_1_rrr2_t = axis_y_rrr2_axes2_in_base_y*inv_r_1_rrr2_r0_y
-    w_1_rrr2_t_2 = axis_y_rrr2_axes2_in_base_x*inv_r_1_rrr2_r0_y
-    # (rrr2-A2) acceleration of the connection point
-    S_ddot_rrr2_tip_x = (
-    axis_y_rrr2_axes2_in_base_y*t_ddot_x - axis_y_rrr2_axes2_in_base_x*t_ddot_y
-    )
-    S_ddot_rrr2_tip_y = (
-    axis_y_rrr2_axes2_in_base_x*t_ddot_x + axis_y_rrr2_axes2_in_base_y*t_ddot_y
-    )
-    # (rrr2-A5) acceleration of the connection point left to the joint accelerations
-    rel_rrr2_x = S_ddot_rrr2_tip_x - bias_rrr2_x
-    rel_rrr2_y = S_ddot_rrr2_tip_y + W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2
-    # (rrr2-A7) acceleration of joint 1
-    qdd_1_rrr2 = inv_r_1_rrr2_r0_y*rel_rrr2_x
-    # (rrr2-N3) acceleration of the reference point of link 2, less gravity
-    acc_2_rrr2_x = (
-    S_ddot_rrr2_tip_x + axis_y_rrr2_axes2_in_base_x*gravity_y -
-        axis_y_rrr2_axes2_in_base_y*gravity_x
-    )
-    acc_2_rrr2_y = (
-    S_ddot_rrr2_tip_y - axis_y_rrr2_axes2_in_base_x*gravity_x -
-        axis_y_rrr2_axes2_in_base_y*gravity_y
-    )
-    # (rrr2-N23) inertia moment of the links that turn with link 1, about their reference points
-    mu_1_rrr2_z = (
-    h_1_rrr2_y*(c_1_rrr2*g_r0_x_2 + g_r0_y_2*s_1_rrr2) - J_1_rrr2_zz*qdd_1_rrr2 -
-        h_1_rrr2_x*(c_1_rrr2*g_r0_y_2 - g_r0_x_2*s_1_rrr2)
-    )
-    # (rrr2-A15) angular acceleration of link 2
-    alpha_2_rrr2_z = (
-    inv_rrr2_platform_joint_offset_x*(rel_rrr2_y + qdd_1_rrr2*r_1_rrr2_r0_x) - qdd_1_rrr2
-    )
-    # (rrr2-N16) inertia moment of the links that turn with link 2, about their reference points
-    mu_2_rrr2_z = J_2_rrr2_zz*alpha_2_rrr2_z + acc_2_rrr2_y*h_2_rrr2_x - acc_2_rrr2_x*h_2_rrr2_y
-    # (rrr2-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-    N_1_rrr2_z = mu_1_rrr2_z + mu_2_rrr2_z
-    # (rrr2-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
-    G_rrr2_t = inv_rrr2_platform_joint_offset_x*mu_2_rrr2_z
-    # (rrr2-N33) leg force on the platform without actuation and without the mass at the connection point
-    c_rrr2_x = (
-    W_2_rrr2_t*h_2_rrr2_x + alpha_2_rrr2_z*h_2_rrr2_y - inv_r_1_rrr2_r0_y*(G_rrr2_t*r_1_rrr2_r0_x
-        - N_1_rrr2_z)
-    )
-    c_rrr2_y = W_2_rrr2_t*h_2_rrr2_y - G_rrr2_t - alpha_2_rrr2_z*h_2_rrr2_x
-    c_rrr2_in_base_x = axis_y_rrr2_axes2_in_base_x*c_rrr2_y + axis_y_rrr2_axes2_in_base_y*c_rrr2_x
-    c_rrr2_in_base_y = axis_y_rrr2_axes2_in_base_y*c_rrr2_y - axis_y_rrr2_axes2_in_base_x*c_rrr2_x
-    ok = (abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2 >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2)
-    return (ok, (c_rrr2_in_base_x, c_rrr2_in_base_y,), (-w_1_rrr2_t, w_1_rrr2_t_2,),)
-
-
-def _required_after(c, s, t, f):
-    f_p_x, f_p_y = s
-    total_rrr_x, total_rrr_y, total_rrr2_x, total_rrr2_y = t
-    # (E3) force that actuators and external wrench must give
-    R_t_x = f_p_x - total_rrr2_x - total_rrr_x
-    R_t_y = f_p_y - total_rrr2_y - total_rrr_y
-    ok = True
-    return (ok, (R_t_x, R_t_y,),)
-
-
-# inverse_kinematics: 54 mul, 28 add, 2 div, 2 sqrt, 4 trig
-def _inverse_kinematics_before(c, X, f):
-    X_0 = X[0]
-    X_1 = X[1]
-    # X: named entries
-    t_x = X_0
-    t_y = X_1
-    ok = True
-    return (ok, (t_x, t_y,), (),)
-
-
-def _inverse_kinematics_rrr(c, k, x, s, f):
-    sqrt = f.sqrt
-    atan2 = f.atan2
-    (
-    Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t, rho2_1_rrr_t,
-        rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-        rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-        rrr_platform_point_x, rrr_platform_point_y,
-    ) = k
-    t_x, t_y = s
-    # (rrr-K1) from the base point to the connection point
-    S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x
-    S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y
-    # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-    Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-    Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-    # (rrr-K3) component along the reference direction
-    px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of the cosine in the equation of joint 1
-    Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-    # (rrr-K4) component across the reference direction
-    py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of the sine in the equation of joint 1
-    Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-    # (rrr-K8) squared amplitude
-    rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-    # (rrr-K9) discriminant
-    disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-    # (rrr-K10) root, with the sign of the branch
-    root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-    # (rrr-K16) from the origin of joint 2 to the connection point
-    x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-    # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-    inv_rho2_1_rrr = 1.0/rho2_1_rrr
-    # (rrr-K13) displacement of joint 1
-    q_1_rrr = (
-    atan2(inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr),
-        inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr))
-    )
-    # (rrr-K20) displacement of joint 2
-    q_2_rrr = (
-    atan2(-inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x,
-        inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x)
-    )
-    ok = (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >= 0.0)
-    return (ok, (), (q_1_rrr, q_2_rrr,),)
-
-
-def _inverse_kinematics_rrr2(c, k, x, s, f):
-    sqrt = f.sqrt
-    atan2 = f.atan2
-    (
-    Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5, inv_uu_2_rrr2_t,
-        rho2_1_rrr2_t, rrr2_base_frame_xx, rrr2_base_frame_xy, rrr2_base_frame_yx,
-        rrr2_base_frame_yy, rrr2_base_point_x, rrr2_base_point_y, rrr2_joint2_offset_x,
-        rrr2_platform_joint_offset_x, rrr2_platform_point_x, rrr2_platform_point_y,
-    ) = k
-    t_x, t_y = s
-    # (rrr2-K1) from the base point to the connection point
-    S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x
-    S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y
-    # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-    Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y
-    Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
-    # (rrr2-K3) component along the reference direction
-    px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
-    # (rrr2-K6) factor of the cosine in the equation of joint 1
-    Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
-    # (rrr2-K4) component across the reference direction
-    py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
-    # (rrr2-K7) factor of the sine in the equation of joint 1
-    Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
-    # (rrr2-K8) squared amplitude
-    rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
-    # (rrr2-K9) discriminant
-    disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2
-    # (rrr2-K10) root, with the sign of the branch
-    root_1_rrr2 = branch_1_rrr2*sqrt(disc_1_rrr2)
-    # (rrr2-K16) from the origin of joint 2 to the connection point
-    x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x - rrr2_joint2_offset_x
-    # (rrr2-K11) cosine of the angle of joint 1 from its reference direction
-    inv_rho2_1_rrr2 = 1.0/rho2_1_rrr2
-    # (rrr2-K13) displacement of joint 1
-    q_1_rrr2 = (
-    atan2(inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2),
-        inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2))
-    )
-    # (rrr2-K20) displacement of joint 2
-    q_2_rrr2 = (
-    atan2(-inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x,
-        inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x)
-    )
-    ok = (abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2 >= 0.0)
-    return (ok, (), (q_1_rrr2, q_2_rrr2,),)
-
-
-# joint_rates: 94 mul, 48 add, 4 div, 2 sqrt, 0 trig
-def _joint_rates_before(c, X, V, f):
-    X_0 = X[0]
-    X_1 = X[1]
-    V_0 = V[0]
-    V_1 = V[1]
-    # X: named entries
-    t_x = X_0
-    t_y = X_1
-    # V: named entries
-    t_dot_x = V_0
-    t_dot_y = V_1
-    ok = True
-    return (ok, (t_x, t_y, t_dot_x, t_dot_y,), (),)
-
-
-def _joint_rates_rrr(c, k, x, s, f):
-    sqrt = f.sqrt
-    (
-    Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_rrr_platform_joint_offset_x,
-        inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
-        rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-        rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y, size_rrr,
-    ) = k
-    t_x, t_y, t_dot_x, t_dot_y = s
-    # (rrr-K1) from the base point to the connection point
-    S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x
-    S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y
-    # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-    Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-    Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-    # (rrr-K3) component along the reference direction
-    px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of the cosine in the equation of joint 1
-    Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-    # (rrr-K4) component across the reference direction
-    py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of the sine in the equation of joint 1
-    Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-    # (rrr-K8) squared amplitude
-    rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-    # (rrr-K9) discriminant
-    disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-    # (rrr-K10) root, with the sign of the branch
-    root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-    # (rrr-K16) from the origin of joint 2 to the connection point
-    x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-    # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-    c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-    # (rrr-K19) sine of the angle of joint 2 from its reference direction
-    s_2_rrr = (
-    inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
-    )
-    # (rrr-V2) from joint 1 to the connection point, along the links
-    r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-    r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-    r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-    # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-    inv_rho2_1_rrr = 1.0/rho2_1_rrr
-    c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-    # (rrr-K12) sine of the angle of joint 1 from its reference direction
-    s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-    # (rrr-V5) reciprocal vector 1
-    axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-    axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
-    axis_y_rrr_axes2_in_base_x = (
-    axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
-    )
-    axis_y_rrr_axes2_in_base_y = (
-    axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
-    )
-    # (rrr-V7) rate of joint 1
-    qd_1_rrr = (
-    (axis_y_rrr_axes2_in_base_y*t_dot_x - axis_y_rrr_axes2_in_base_x*t_dot_y)/r_1_rrr_r0_y
-    )
-    qd_2_rrr = (
-    inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
-        axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1_rrr*(c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr))
-    )
-    ok = (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr)
-    return (ok, (), (-qd_1_rrr, qd_2_rrr,),)
-
-
-def _joint_rates_rrr2(c, k, x, s, f):
-    sqrt = f.sqrt
-    (
-    Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5,
-        inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t, rrr2_base_frame_xx,
-        rrr2_base_frame_xy, rrr2_base_frame_yx, rrr2_base_frame_yy, rrr2_base_point_x,
-        rrr2_base_point_y, rrr2_joint2_offset_x, rrr2_platform_joint_offset_x,
-        rrr2_platform_point_x, rrr2_platform_point_y, size_rrr2,
-    ) = k
-    t_x, t_y, t_dot_x, t_dot_y = s
-    # (rrr2-K1) from the base point to the connection point
-    S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x
-    S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y
-    # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-    Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y
-    Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
-    # (rrr2-K3) component along the reference direction
-    px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
-    # (rrr2-K6) factor of the cosine in the equation of joint 1
-    Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
-    # (rrr2-K4) component across the reference direction
-    py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
-    # (rrr2-K7) factor of the sine in the equation of joint 1
-    Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
-    # (rrr2-K8) squared amplitude
-    rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
-    # (rrr2-K9) discriminant
-    disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2
-    # (rrr2-K10) root, with the sign of the branch
-    root_1_rrr2 = branch_1_rrr2*sqrt(disc_1_rrr2)
-    # (rrr2-K16) from the origin of joint 2 to the connection point
-    x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x - rrr2_joint2_offset_x
-    # (rrr2-K18) cosine of the angle of joint 2 from its reference direction
-    c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x
-    # (rrr2-K19) sine of the angle of joint 2 from its reference direction
-    s_2_rrr2 = (
-    inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x
-    )
-    # (rrr2-V2) from joint 1 to the connection point, along the links
-    r_1_rrr2_t = rrr2_platform_joint_offset_x*s_2_rrr2
-    r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x
-    r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*r_1_rrr2_t
-    # (rrr2-K11) cosine of the angle of joint 1 from its reference direction
-    inv_rho2_1_rrr2 = 1.0/rho2_1_rrr2
-    c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2)
-    # (rrr2-K12) sine of the angle of joint 1 from its reference direction
-    s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2)
-    # (rrr2-V5) reciprocal vector 1
-    axis_y_rrr2_axes2_r1_x = c_1_rrr2*s_2_rrr2 - c_2_rrr2*s_1_rrr2
-    axis_y_rrr2_axes2_r1_y = c_1_rrr2*c_2_rrr2 + s_1_rrr2*s_2_rrr2
-    axis_y_rrr2_axes2_in_base_x = (
-    axis_y_rrr2_axes2_r1_x*rrr2_base_frame_xx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_xy
-    )
-    axis_y_rrr2_axes2_in_base_y = (
-    axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy
-    )
-    # (rrr2-V7) rate of joint 1
-    qd_1_rrr2 = (
-    (axis_y_rrr2_axes2_in_base_y*t_dot_x - axis_y_rrr2_axes2_in_base_x*t_dot_y)/r_1_rrr2_r0_y
-    )
-    qd_2_rrr2 = (
-    inv_rrr2_platform_joint_offset_x*(axis_y_rrr2_axes2_in_base_x*t_dot_x +
-        axis_y_rrr2_axes2_in_base_y*t_dot_y + qd_1_rrr2*(c_2_rrr2*r_1_rrr2_x +
-        r_1_rrr2_t*s_2_rrr2))
-    )
-    ok = (abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2 >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2)
-    return (ok, (), (-qd_1_rrr2, qd_2_rrr2,),)
-
-
-# joint_accelerations: 124 mul, 62 add, 4 div, 2 sqrt, 0 trig
-def _joint_accelerations_before(c, X, V, A, f):
-    X_0 = X[0]
-    X_1 = X[1]
-    V_0 = V[0]
-    V_1 = V[1]
-    A_0 = A[0]
-    A_1 = A[1]
-    # X: named entries
-    t_x = X_0
-    t_y = X_1
-    # V: named entries
-    t_dot_x = V_0
-    t_dot_y = V_1
-    # A: named entries
-    t_ddot_x = A_0
-    t_ddot_y = A_1
-    ok = True
-    return (ok, (t_x, t_y, t_dot_x, t_dot_y, t_ddot_x, t_ddot_y,), (),)
-
-
-def _joint_accelerations_rrr(c, k, x, s, f):
-    sqrt = f.sqrt
-    (
-    Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_rrr_platform_joint_offset_x,
-        inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
-        rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-        rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y, size_rrr,
-    ) = k
-    t_x, t_y, t_dot_x, t_dot_y, t_ddot_x, t_ddot_y = s
-    # (rrr-K1) from the base point to the connection point
-    S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x
-    S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y
-    # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-    Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-    Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-    # (rrr-K3) component along the reference direction
-    px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of the cosine in the equation of joint 1
-    Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-    # (rrr-K4) component across the reference direction
-    py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of the sine in the equation of joint 1
-    Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-    # (rrr-K8) squared amplitude
-    rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-    # (rrr-K9) discriminant
-    disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-    # (rrr-K10) root, with the sign of the branch
-    root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-    # (rrr-K16) from the origin of joint 2 to the connection point
-    x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-    # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-    c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-    # (rrr-K19) sine of the angle of joint 2 from its reference direction
-    s_2_rrr = (
-    inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
-    )
-    # (rrr-V2) from joint 1 to the connection point, along the links
-    r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-    r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-    r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
-    r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-    # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-    inv_rho2_1_rrr = 1.0/rho2_1_rrr
-    c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-    # (rrr-K12) sine of the angle of joint 1 from its reference direction
-    s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-    # (rrr-V5) reciprocal vector 1
-    axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-    axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
-    axis_y_rrr_axes2_in_base_x = (
-    axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
-    )
-    axis_y_rrr_axes2_in_base_y = (
-    axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
-    )
-    inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-    # (rrr-V7) rate of joint 1
-    qd_1_rrr = (
-    inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x - axis_y_rrr_axes2_in_base_x*t_dot_y)
-    )
-    # (rrr-V11) angular velocity of link 2
-    omega_2_rrr_z = (
-    inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
-        axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
-    )
-    # (rrr-V10) centripetal tensor of link 1
-    W_1_rrr_t = qd_1_rrr*qd_1_rrr
-    # (rrr-A4) acceleration of the connection point at zero joint accelerations
-    bias_rrr_x = (
-    -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-        W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
-    )
-    # (rrr-A5) acceleration of the connection point left to the joint accelerations
-    rel_rrr_x = (
-    axis_y_rrr_axes2_in_base_y*t_ddot_x - bias_rrr_x - axis_y_rrr_axes2_in_base_x*t_ddot_y
-    )
-    rel_rrr_y = (
-    axis_y_rrr_axes2_in_base_x*t_ddot_x + axis_y_rrr_axes2_in_base_y*t_ddot_y +
-        W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
-    )
-    # (rrr-A7) acceleration of joint 1
-    qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x
-    qdd_2_rrr = inv_rrr_platform_joint_offset_x*(rel_rrr_y + qdd_1_rrr*r_1_rrr_r0_x)
-    ok = (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr)
-    return (ok, (), (-qdd_1_rrr, qdd_2_rrr,),)
-
-
-def _joint_accelerations_rrr2(c, k, x, s, f):
-    sqrt = f.sqrt
-    (
-    Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5,
-        inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t, rrr2_base_frame_xx,
-        rrr2_base_frame_xy, rrr2_base_frame_yx, rrr2_base_frame_yy, rrr2_base_point_x,
-        rrr2_base_point_y, rrr2_joint2_offset_x, rrr2_platform_joint_offset_x,
-        rrr2_platform_point_x, rrr2_platform_point_y, size_rrr2,
-    ) = k
-    t_x, t_y, t_dot_x, t_dot_y, t_ddot_x, t_ddot_y = s
-    # (rrr2-K1) from the base point to the connection point
-    S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x
-    S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y
-    # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-    Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y
-    Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
-    # (rrr2-K3) component along the reference direction
-    px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
-    # (rrr2-K6) factor of the cosine in the equation of joint 1
-    Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
-    # (rrr2-K4) component across the reference direction
-    py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
-    # (rrr2-K7) factor of the sine in the equation of joint 1
-    Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
-    # (rrr2-K8) squared amplitude
-    rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
-    # (rrr2-K9) discriminant
-    disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2
-    # (rrr2-K10) root, with the sign of the branch
-    root_1_rrr2 = branch_1_rrr2*sqrt(disc_1_rrr2)
-    # (rrr2-K16) from the origin of joint 2 to the connection point
-    x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x - rrr2_joint2_offset_x
-    # (rrr2-K18) cosine of the angle of joint 2 from its reference direction
-    c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x
-    # (rrr2-K19) sine of the angle of joint 2 from its reference direction
-    s_2_rrr2 = (
-    inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x
-    )
-    # (rrr2-V2) from joint 1 to the connection point, along the links
-    r_1_rrr2_t = rrr2_platform_joint_offset_x*s_2_rrr2
-    r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x
-    r_1_rrr2_r0_x = c_2_rrr2*r_1_rrr2_x + r_1_rrr2_t*s_2_rrr2
-    r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*r_1_rrr2_t
-    # (rrr2-K11) cosine of the angle of joint 1 from its reference direction
-    inv_rho2_1_rrr2 = 1.0/rho2_1_rrr2
-    c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2)
-    # (rrr2-K12) sine of the angle of joint 1 from its reference direction
-    s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2)
-    # (rrr2-V5) reciprocal vector 1
-    axis_y_rrr2_axes2_r1_x = c_1_rrr2*s_2_rrr2 - c_2_rrr2*s_1_rrr2
-    axis_y_rrr2_axes2_r1_y = c_1_rrr2*c_2_rrr2 + s_1_rrr2*s_2_rrr2
-    axis_y_rrr2_axes2_in_base_x = (
-    axis_y_rrr2_axes2_r1_x*rrr2_base_frame_xx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_xy
-    )
-    axis_y_rrr2_axes2_in_base_y = (
-    axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy
-    )
-    inv_r_1_rrr2_r0_y = 1.0/r_1_rrr2_r0_y
-    # (rrr2-V7) rate of joint 1
-    qd_1_rrr2 = (
-    inv_r_1_rrr2_r0_y*(axis_y_rrr2_axes2_in_base_y*t_dot_x - axis_y_rrr2_axes2_in_base_x*t_dot_y)
-    )
-    # (rrr2-V11) angular velocity of link 2
-    omega_2_rrr2_z = (
-    inv_rrr2_platform_joint_offset_x*(axis_y_rrr2_axes2_in_base_x*t_dot_x +
-        axis_y_rrr2_axes2_in_base_y*t_dot_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2
-    )
-    # (rrr2-V10) centripetal tensor of link 1
-    W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2
-    # (rrr2-A4) acceleration of the connection point at zero joint accelerations
-    bias_rrr2_x = (
-    -omega_2_rrr2_z*omega_2_rrr2_z*rrr2_platform_joint_offset_x -
-        W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x
-    )
-    # (rrr2-A5) acceleration of the connection point left to the joint accelerations
-    rel_rrr2_x = (
-    axis_y_rrr2_axes2_in_base_y*t_ddot_x - bias_rrr2_x - axis_y_rrr2_axes2_in_base_x*t_ddot_y
-    )
-    rel_rrr2_y = (
-    axis_y_rrr2_axes2_in_base_x*t_ddot_x + axis_y_rrr2_axes2_in_base_y*t_ddot_y +
-        W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2
-    )
-    # (rrr2-A7) acceleration of joint 1
-    qdd_1_rrr2 = inv_r_1_rrr2_r0_y*rel_rrr2_x
-    qdd_2_rrr2 = inv_rrr2_platform_joint_offset_x*(rel_rrr2_y + qdd_1_rrr2*r_1_rrr2_r0_x)
-    ok = (abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2 >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2)
-    return (ok, (), (-qdd_1_rrr2, qdd_2_rrr2,),)
-
-
-# legs: 188 mul, 106 add, 4 div, 2 sqrt, 0 trig
-def _legs_before(c, X, V, A, f):
-    X_0 = X[0]
-    X_1 = X[1]
-    V_0 = V[0]
-    V_1 = V[1]
-    A_0 = A[0]
-    A_1 = A[1]
-    # X: named entries
-    t_x = X_0
-    t_y = X_1
-    # V: named entries
-    t_dot_x = V_0
-    t_dot_y = V_1
-    # A: named entries
-    t_ddot_x = A_0
-    t_ddot_y = A_1
-    ok = True
-    return (ok, (t_x, t_y, t_dot_x, t_dot_y, t_ddot_x, t_ddot_y,), (),)
-
-
-def _legs_rrr(c, k, x, s, f):
-    sqrt = f.sqrt
-    gravity_x, gravity_y = c
-    (
-    J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x, g_r0_y, h_1_rrr_x,
-        h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5, inv_rrr_platform_joint_offset_x,
-        inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
-        rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
-        rrr_link2_mass, rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-        size_rrr,
-    ) = k
-    t_x, t_y, t_dot_x, t_dot_y, t_ddot_x, t_ddot_y = s
-    # (rrr-K1) from the base point to the connection point
-    S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x
-    S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y
-    # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-    Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-    Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-    # (rrr-K3) component along the reference direction
-    px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of the cosine in the equation of joint 1
-    Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-    # (rrr-K4) component across the reference direction
-    py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of the sine in the equation of joint 1
-    Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-    # (rrr-K8) squared amplitude
-    rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-    # (rrr-K9) discriminant
-    disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-    # (rrr-K10) root, with the sign of the branch
-    root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-    # (rrr-K16) from the origin of joint 2 to the connection point
-    x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-    # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-    c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-    # (rrr-K19) sine of the angle of joint 2 from its reference direction
-    s_2_rrr = (
-    inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
-    )
-    # (rrr-V2) from joint 1 to the connection point, along the links
-    r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-    r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-    r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
-    r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-    # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-    inv_rho2_1_rrr = 1.0/rho2_1_rrr
-    c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-    # (rrr-K12) sine of the angle of joint 1 from its reference direction
-    s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-    # (rrr-V5) reciprocal vector 1
-    axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-    axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
-    axis_y_rrr_axes2_in_base_x = (
-    axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
-    )
-    axis_y_rrr_axes2_in_base_y = (
-    axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
-    )
-    inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-    # (rrr-V6) reciprocal vector 2
-    w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x
-    # (rrr-V7) rate of joint 1
-    qd_1_rrr = (
-    inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x - axis_y_rrr_axes2_in_base_x*t_dot_y)
-    )
-    # (rrr-V11) angular velocity of link 2
-    omega_2_rrr_z = (
-    inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
-        axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
-    )
-    # (rrr-V10) centripetal tensor of link 1
-    W_1_rrr_t = qd_1_rrr*qd_1_rrr
-    # (rrr-V12) centripetal tensor of link 2
-    W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
-    # (rrr-A4) acceleration of the connection point at zero joint accelerations
-    bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
-    # (rrr-V5) reciprocal vector 1
-    w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
-    w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
-    # (rrr-V6) reciprocal vector 2
-    w_2_rrr_in_base_x = (
-    axis_y_rrr_axes2_in_base_x*inv_rrr_platform_joint_offset_x +
-        axis_y_rrr_axes2_in_base_y*w_2_rrr_t
-    )
-    w_2_rrr_in_base_y = (
-    axis_y_rrr_axes2_in_base_y*inv_rrr_platform_joint_offset_x -
-        axis_y_rrr_axes2_in_base_x*w_2_rrr_t
-    )
-    # (rrr-A2) acceleration of the connection point
-    S_ddot_rrr_tip_x = axis_y_rrr_axes2_in_base_y*t_ddot_x - axis_y_rrr_axes2_in_base_x*t_ddot_y
-    S_ddot_rrr_tip_y = axis_y_rrr_axes2_in_base_x*t_ddot_x + axis_y_rrr_axes2_in_base_y*t_ddot_y
-    # (rrr-A5) acceleration of the connection point left to the joint accelerations
-    rel_rrr_x = S_ddot_rrr_tip_x - bias_rrr_x
-    rel_rrr_y = S_ddot_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
-    # (rrr-A7) acceleration of joint 1
-    qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x
-    # (rrr-N3) acceleration of the reference point of link 2, less gravity
-    acc_2_rrr_x = (
-    S_ddot_rrr_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y - axis_y_rrr_axes2_in_base_y*gravity_x
-    )
-    acc_2_rrr_y = (
-    S_ddot_rrr_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x - axis_y_rrr_axes2_in_base_y*gravity_y
-    )
-    # (rrr-N23) inertia moment of the links that turn with link 1, about their reference points
-    mu_1_rrr_z = (
-    h_1_rrr_y*(c_1_rrr*g_r0_x + g_r0_y*s_1_rrr) - J_1_rrr_zz*qdd_1_rrr - h_1_rrr_x*(c_1_rrr*g_r0_y
-        - g_r0_x*s_1_rrr)
-    )
-    # (rrr-A15) angular acceleration of link 2
-    alpha_2_rrr_z = (
-    inv_rrr_platform_joint_offset_x*(rel_rrr_y + qdd_1_rrr*r_1_rrr_r0_x) - qdd_1_rrr
-    )
-    # (rrr-N16) inertia moment of the links that turn with link 2, about their reference points
-    mu_2_rrr_z = J_2_rrr_zz*alpha_2_rrr_z + acc_2_rrr_y*h_2_rrr_x - acc_2_rrr_x*h_2_rrr_y
-    # (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-    N_1_rrr_z = mu_1_rrr_z + mu_2_rrr_z
-    # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
-    G_rrr_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_z
-    # (rrr-N33) leg force on the platform without actuation and without the mass at the connection point
-    c_rrr_x = (
-    W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_t*r_1_rrr_r0_x -
-        N_1_rrr_z)
-    )
-    c_rrr_y = W_2_rrr_t*h_2_rrr_y - G_rrr_t - alpha_2_rrr_z*h_2_rrr_x
-    # (rrr-N38) leg force on the platform without actuation, the last link's mass included
-    c_true_rrr_x = c_rrr_x - acc_2_rrr_x*rrr_link2_mass
-    c_true_rrr_y = c_rrr_y - acc_2_rrr_y*rrr_link2_mass
-    c_true_rrr_in_base_x = (
-    axis_y_rrr_axes2_in_base_x*c_true_rrr_y + axis_y_rrr_axes2_in_base_y*c_true_rrr_x
-    )
-    c_true_rrr_in_base_y = (
-    axis_y_rrr_axes2_in_base_y*c_true_rrr_y - axis_y_rrr_axes2_in_base_x*c_true_rrr_x
-    )
-    ok = (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr)
-    return (
-    ok, (), (c_true_rrr_in_base_x, c_true_rrr_in_base_y, -w_1_rrr_t, w_1_rrr_t_2,
-        w_2_rrr_in_base_x, w_2_rrr_in_base_y,),
-    )
-
-
-def _legs_rrr2(c, k, x, s, f):
-    sqrt = f.sqrt
-    gravity_x, gravity_y = c
-    (
-    J_1_rrr2_zz, J_2_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, g_r0_x_2, g_r0_y_2,
-        h_1_rrr2_x, h_1_rrr2_y, h_2_rrr2_x, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
-        inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t, rrr2_base_frame_xx,
-        rrr2_base_frame_xy, rrr2_base_frame_yx, rrr2_base_frame_yy, rrr2_base_point_x,
-        rrr2_base_point_y, rrr2_joint2_offset_x, rrr2_link2_mass, rrr2_platform_joint_offset_x,
-        rrr2_platform_point_x, rrr2_platform_point_y, size_rrr2,
-    ) = k
-    t_x, t_y, t_dot_x, t_dot_y, t_ddot_x, t_ddot_y = s
-    # (rrr2-K1) from the base point to the connection point
-    S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x
-    S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y
-    # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-    Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y
-    Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
-    # (rrr2-K3) component along the reference direction
-    px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
-    # (rrr2-K6) factor of the cosine in the equation of joint 1
-    Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
-    # (rrr2-K4) component across the reference direction
-    py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
-    # (rrr2-K7) factor of the sine in the equation of joint 1
-    Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
-    # (rrr2-K8) squared amplitude
-    rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
-    # (rrr2-K9) discriminant
-    disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2
-    # (rrr2-K10) root, with the sign of the branch
-    root_1_rrr2 = branch_1_rrr2*sqrt(disc_1_rrr2)
-    # (rrr2-K16) from the origin of joint 2 to the connection point
-    x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x - rrr2_joint2_offset_x
-    # (rrr2-K18) cosine of the angle of joint 2 from its reference direction
-    c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x
-    # (rrr2-K19) sine of the angle of joint 2 from its reference direction
-    s_2_rrr2 = (
-    inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x
-    )
-    # (rrr2-V2) from joint 1 to the connection point, along the links
-    r_1_rrr2_t = rrr2_platform_joint_offset_x*s_2_rrr2
-    r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x
-    r_1_rrr2_r0_x = c_2_rrr2*r_1_rrr2_x + r_1_rrr2_t*s_2_rrr2
-    r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*r_1_rrr2_t
-    # (rrr2-K11) cosine of the angle of joint 1 from its reference direction
-    inv_rho2_1_rrr2 = 1.0/rho2_1_rrr2
-    c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2)
-    # (rrr2-K12) sine of the angle of joint 1 from its reference direction
-    s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2)
-    # (rrr2-V5) reciprocal vector 1
-    axis_y_rrr2_axes2_r1_x = c_1_rrr2*s_2_rrr2 - c_2_rrr2*s_1_rrr2
-    axis_y_rrr2_axes2_r1_y = c_1_rrr2*c_2_rrr2 + s_1_rrr2*s_2_rrr2
-    axis_y_rrr2_axes2_in_base_x = (
-    axis_y_rrr2_axes2_r1_x*rrr2_base_frame_xx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_xy
-    )
-    axis_y_rrr2_axes2_in_base_y = (
-    axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy
-    )
-    inv_r_1_rrr2_r0_y = 1.0/r_1_rrr2_r0_y
-    # (rrr2-V7) rate of joint 1
-    qd_1_rrr2 = (
-    inv_r_1_rrr2_r0_y*(axis_y_rrr2_axes2_in_base_y*t_dot_x - axis_y_rrr2_axes2_in_base_x*t_dot_y)
-    )
-    # (rrr2-V11) angular velocity of link 2
-    omega_2_rrr2_z = (
-    inv_rrr2_platform_joint_offset_x*(axis_y_rrr2_axes2_in_base_x*t_dot_x +
-        axis_y_rrr2_axes2_in_base_y*t_dot_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2
-    )
-    # (rrr2-V10) centripetal tensor of link 1
-    W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2
-    # (rrr2-V12) centripetal tensor of link 2
-    W_2_rrr2_t = omega_2_rrr2_z*omega_2_rrr2_z
-    # (rrr2-A4) acceleration of the connection point at zero joint accelerations
-    bias_rrr2_x = (
-    -W_2_rrr2_t*rrr2_platform_joint_offset_x - W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x
-    )
-    # (rrr2-V5) reciprocal vector 1
-    w_1_rrr2_t = axis_y_rrr2_axes2_in_base_y*inv_r_1_rrr2_r0_y
-    w_1_rrr2_t_2 = axis_y_rrr2_axes2_in_base_x*inv_r_1_rrr2_r0_y
-    # (rrr2-A2) acceleration of the connection point
-    S_ddot_rrr2_tip_x = (
-    axis_y_rrr2_axes2_in_base_y*t_ddot_x - axis_y_rrr2_axes2_in_base_x*t_ddot_y
-    )
-    S_ddot_rrr2_tip_y = (
-    axis_y_rrr2_axes2_in_base_x*t_ddot_x + axis_y_rrr2_axes2_in_base_y*t_ddot_y
-    )
-    # (rrr2-A5) acceleration of the connection point left to the joint accelerations
-    rel_rrr2_x = S_ddot_rrr2_tip_x - bias_rrr2_x
-    rel_rrr2_y = S_ddot_rrr2_tip_y + W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2
-    # (rrr2-A7) acceleration of joint 1
-    qdd_1_rrr2 = inv_r_1_rrr2_r0_y*rel_rrr2_x
-    # (rrr2-N3) acceleration of the reference point of link 2, less gravity
-    acc_2_rrr2_x = (
-    S_ddot_rrr2_tip_x + axis_y_rrr2_axes2_in_base_x*gravity_y -
-        axis_y_rrr2_axes2_in_base_y*gravity_x
-    )
-    acc_2_rrr2_y = (
-    S_ddot_rrr2_tip_y - axis_y_rrr2_axes2_in_base_x*gravity_x -
-        axis_y_rrr2_axes2_in_base_y*gravity_y
-    )
-    # (rrr2-N23) inertia moment of the links that turn with link 1, about their reference points
-    mu_1_rrr2_z = (
-    h_1_rrr2_y*(c_1_rrr2*g_r0_x_2 + g_r0_y_2*s_1_rrr2) - J_1_rrr2_zz*qdd_1_rrr2 -
-        h_1_rrr2_x*(c_1_rrr2*g_r0_y_2 - g_r0_x_2*s_1_rrr2)
-    )
-    # (rrr2-A15) angular acceleration of link 2
-    alpha_2_rrr2_z = (
-    inv_rrr2_platform_joint_offset_x*(rel_rrr2_y + qdd_1_rrr2*r_1_rrr2_r0_x) - qdd_1_rrr2
-    )
-    # (rrr2-N16) inertia moment of the links that turn with link 2, about their reference points
-    mu_2_rrr2_z = J_2_rrr2_zz*alpha_2_rrr2_z + acc_2_rrr2_y*h_2_rrr2_x - acc_2_rrr2_x*h_2_rrr2_y
-    # (rrr2-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-    N_1_rrr2_z = mu_1_rrr2_z + mu_2_rrr2_z
-    # (rrr2-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
-    G_rrr2_t = inv_rrr2_platform_joint_offset_x*mu_2_rrr2_z
-    # (rrr2-N33) leg force on the platform without actuation and without the mass at the connection point
-    c_rrr2_x = (
-    W_2_rrr2_t*h_2_rrr2_x + alpha_2_rrr2_z*h_2_rrr2_y - inv_r_1_rrr2_r0_y*(G_rrr2_t*r_1_rrr2_r0_x
-        - N_1_rrr2_z)
-    )
-    c_rrr2_y = W_2_rrr2_t*h_2_rrr2_y - G_rrr2_t - alpha_2_rrr2_z*h_2_rrr2_x
-    # (rrr2-N38) leg force on the platform without actuation, the last link's mass included
-    c_true_rrr2_x = c_rrr2_x - acc_2_rrr2_x*rrr2_link2_mass
-    c_true_rrr2_y = c_rrr2_y - acc_2_rrr2_y*rrr2_link2_mass
-    c_true_rrr2_in_base_x = (
-    axis_y_rrr2_axes2_in_base_x*c_true_rrr2_y + axis_y_rrr2_axes2_in_base_y*c_true_rrr2_x
-    )
-    c_true_rrr2_in_base_y = (
-    axis_y_rrr2_axes2_in_base_y*c_true_rrr2_y - axis_y_rrr2_axes2_in_base_x*c_true_rrr2_x
-    )
-    ok = (abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2 >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2)
-    return (ok, (), (c_true_rrr2_in_base_x, c_true_rrr2_in_base_y, -w_1_rrr2_t, w_1_rrr2_t_2,),)
-
-
-# potential: 90 mul, 57 add, 2 div, 2 sqrt, 0 trig
-def _potential_before(c, X, f):
-    gravity_x, gravity_y, h_star_x, h_star_y, m_star = c
-    X_0 = X[0]
-    X_1 = X[1]
-    # X: named entries
-    t_x = X_0
-    t_y = X_1
-    # (V1) potential energy
-    potential_t = gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y + m_star*t_y)
-    ok = True
-    return (ok, (t_x, t_y, potential_t,), (),)
-
-
-def _potential_rrr(c, k, x, s, f):
-    sqrt = f.sqrt
-    (
-    Kd_1_rrr_t_2, Kd_1_rrr_t_3, b_rrr_r0_x, b_rrr_r0_y, branch_1_rrr, g_r0_x, g_r0_y, h_1_rrr_x,
-        h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t, rho2_1_rrr_t,
-        rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-        rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x, rrr_link1_mass,
-        rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
-    ) = k
-    t_x, t_y = s
-    # (rrr-K1) from the base point to the connection point
-    S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x
-    S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y
-    # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-    Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-    Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-    # (rrr-K3) component along the reference direction
-    px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of the cosine in the equation of joint 1
-    Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-    # (rrr-K4) component across the reference direction
-    py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of the sine in the equation of joint 1
-    Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-    # (rrr-K8) squared amplitude
-    rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-    # (rrr-K9) discriminant
-    disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-    # (rrr-K10) root, with the sign of the branch
-    root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-    # (rrr-K16) from the origin of joint 2 to the connection point
-    x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-    # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-    c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-    # (rrr-K19) sine of the angle of joint 2 from its reference direction
-    s_2_rrr = (
-    inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
-    )
-    # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-    inv_rho2_1_rrr = 1.0/rho2_1_rrr
-    c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-    # (rrr-K12) sine of the angle of joint 1 from its reference direction
-    s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-    # (V1) potential energy
-    potential_t_3 = (
-    (c_1_rrr*g_r0_x + g_r0_y*s_1_rrr)*(h_1_rrr_x + c_2_rrr*h_2_rrr_x + h_2_rrr_y*s_2_rrr +
-        rrr_link1_mass*(b_rrr_r0_x*c_1_rrr + b_rrr_r0_y*s_1_rrr)) + (c_1_rrr*g_r0_y -
-        g_r0_x*s_1_rrr)*(h_1_rrr_y + c_2_rrr*h_2_rrr_y + rrr_link1_mass*(b_rrr_r0_y*c_1_rrr -
-        b_rrr_r0_x*s_1_rrr) - h_2_rrr_x*s_2_rrr)
-    )
-    ok = (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >= 0.0)
-    return (ok, (potential_t_3,), (),)
-
-
-def _potential_rrr2(c, k, x, s, f):
-    sqrt = f.sqrt
-    (
-    Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, b_rrr2_r0_x, b_rrr2_r0_y, branch_1_rrr2, g_r0_x_2, g_r0_y_2,
-        h_1_rrr2_x, h_1_rrr2_y, h_2_rrr2_x, h_2_rrr2_y, inv_Kd_1_rrr2_t_5, inv_uu_2_rrr2_t,
-        rho2_1_rrr2_t, rrr2_base_frame_xx, rrr2_base_frame_xy, rrr2_base_frame_yx,
-        rrr2_base_frame_yy, rrr2_base_point_x, rrr2_base_point_y, rrr2_joint2_offset_x,
-        rrr2_link1_mass, rrr2_platform_joint_offset_x, rrr2_platform_point_x,
-        rrr2_platform_point_y,
-    ) = k
-    t_x, t_y = s
-    # (rrr2-K1) from the base point to the connection point
-    S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x
-    S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y
-    # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-    Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y
-    Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
-    # (rrr2-K3) component along the reference direction
-    px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
-    # (rrr2-K6) factor of the cosine in the equation of joint 1
-    Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
-    # (rrr2-K4) component across the reference direction
-    py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
-    # (rrr2-K7) factor of the sine in the equation of joint 1
-    Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
-    # (rrr2-K8) squared amplitude
-    rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
-    # (rrr2-K9) discriminant
-    disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2
-    # (rrr2-K10) root, with the sign of the branch
-    root_1_rrr2 = branch_1_rrr2*sqrt(disc_1_rrr2)
-    # (rrr2-K16) from the origin of joint 2 to the connection point
-    x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x - rrr2_joint2_offset_x
-    # (rrr2-K18) cosine of the angle of joint 2 from its reference direction
-    c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x
-    # (rrr2-K19) sine of the angle of joint 2 from its reference direction
-    s_2_rrr2 = (
-    inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x
-    )
-    # (rrr2-K11) cosine of the angle of joint 1 from its reference direction
-    inv_rho2_1_rrr2 = 1.0/rho2_1_rrr2
-    c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2)
-    # (rrr2-K12) sine of the angle of joint 1 from its reference direction
-    s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2)
-    # (V1) potential energy
-    potential_t_2 = (
-    (c_1_rrr2*g_r0_x_2 + g_r0_y_2*s_1_rrr2)*(h_1_rrr2_x + c_2_rrr2*h_2_rrr2_x +
-        h_2_rrr2_y*s_2_rrr2 + rrr2_link1_mass*(b_rrr2_r0_x*c_1_rrr2 + b_rrr2_r0_y*s_1_rrr2)) +
-        (c_1_rrr2*g_r0_y_2 - g_r0_x_2*s_1_rrr2)*(h_1_rrr2_y + c_2_rrr2*h_2_rrr2_y +
-        rrr2_link1_mass*(b_rrr2_r0_y*c_1_rrr2 - b_rrr2_r0_x*s_1_rrr2) - h_2_rrr2_x*s_2_rrr2)
-    )
-    ok = (abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2 >= 0.0)
-    return (ok, (potential_t_2,), (),)
-
-
-def _potential_after(c, s, t, f):
-    potential_t, = s
-    total_rrr, total_rrr2 = t
-    # (V1) potential energy
-    potential = -potential_t - total_rrr - total_rrr2
-    ok = True
-    return (ok, (potential,),)
-
-
-# condition: 100 mul, 54 add, 4 div, 5 sqrt, 0 trig
-def _condition_before(c, X, f):
-    legs_size, = c
-    X_0 = X[0]
-    X_1 = X[1]
-    # X: named entries
-    t_x = X_0
-    t_y = X_1
-    ok = True
-    return (ok, (t_x, t_y,), (legs_size,),)
-
-
-def _condition_rrr(c, k, x, s, f):
-    sqrt = f.sqrt
-    least = f.least
-    b_c_x, b_c_y = c
-    (
-    Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_rho2_1_rrr_t_4,
-        inv_rrr_platform_joint_offset_x, inv_size_rrr, inv_uu_2_rrr_t, rho2_1_rrr_t,
-        rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-        rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-        rrr_platform_point_x, rrr_platform_point_y, size_rrr,
-    ) = k
-    t_x, t_y = s
-    # (rrr-K1) from the base point to the connection point
-    S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x
-    S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y
-    # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-    Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
-    Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
-    # (rrr-K3) component along the reference direction
-    px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of the cosine in the equation of joint 1
-    Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
-    # (rrr-K4) component across the reference direction
-    py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of the sine in the equation of joint 1
-    Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
-    # (rrr-K8) squared amplitude
-    rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
-    # (rrr-K9) discriminant
-    disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
-    # (rrr-K10) root, with the sign of the branch
-    root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
-    # (rrr-K16) from the origin of joint 2 to the connection point
-    x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
-    # (rrr-K18) cosine of the angle of joint 2 from its reference direction
-    c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
-    # (rrr-K19) sine of the angle of joint 2 from its reference direction
-    s_2_rrr = (
-    inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
-    )
-    # (rrr-V2) from joint 1 to the connection point, along the links
-    r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
-    r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
-    r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
-    # (rrr-K11) cosine of the angle of joint 1 from its reference direction
-    inv_rho2_1_rrr = 1.0/rho2_1_rrr
-    c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
-    # (rrr-K12) sine of the angle of joint 1 from its reference direction
-    s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
-    # (rrr-V5) reciprocal vector 1
-    axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
-    axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
-    axis_y_rrr_axes2_in_base_x = (
-    axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
-    )
-    axis_y_rrr_axes2_in_base_y = (
-    axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
-    )
-    inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-    # (rrr-V6) reciprocal vector 2
-    w_2_rrr_t = (
-    inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*(c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr)
-    )
-    # (rrr-V5) reciprocal vector 1
-    w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
-    w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
-    # (rrr-V6) reciprocal vector 2
-    w_2_rrr_in_base_x = (
-    axis_y_rrr_axes2_in_base_x*inv_rrr_platform_joint_offset_x +
-        axis_y_rrr_axes2_in_base_y*w_2_rrr_t
-    )
-    w_2_rrr_in_base_y = (
-    axis_y_rrr_axes2_in_base_y*inv_rrr_platform_joint_offset_x -
-        axis_y_rrr_axes2_in_base_x*w_2_rrr_t
-    )
-    # (C2) rms distance of the platform points from their centroid
-    spread_t = b_c_x - rrr_platform_point_x
-    spread_t_2 = b_c_y - rrr_platform_point_y
-    spread_t_3 = spread_t*spread_t + spread_t_2*spread_t_2
-    # (rrr-K8) squared amplitude
-    pivot_size = abs(rho2_1_rrr)
-    # (rrr-V5) reciprocal vector 1
-    pivot_size_2 = abs(r_1_rrr_r0_y)
-    # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
-    least_pivots = least(sqrt(inv_rho2_1_rrr_t_4*pivot_size), inv_size_rrr*pivot_size_2)
-    ok = (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr)
-    return (
-    ok, (spread_t_3,), (-w_1_rrr_t, w_1_rrr_t_2, w_2_rrr_in_base_x, w_2_rrr_in_base_y,
-        least_pivots, disc_1_rrr,),
-    )
-
-
-def _condition_rrr2(c, k, x, s, f):
-    sqrt = f.sqrt
-    least = f.least
-    b_c_x, b_c_y = c
-    (
-    Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5, inv_rho2_1_rrr2_t_4,
-        inv_size_rrr2, inv_uu_2_rrr2_t, rho2_1_rrr2_t, rrr2_base_frame_xx, rrr2_base_frame_xy,
-        rrr2_base_frame_yx, rrr2_base_frame_yy, rrr2_base_point_x, rrr2_base_point_y,
-        rrr2_joint2_offset_x, rrr2_platform_joint_offset_x, rrr2_platform_point_x,
-        rrr2_platform_point_y, size_rrr2,
-    ) = k
-    t_x, t_y = s
-    # (rrr2-K1) from the base point to the connection point
-    S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x
-    S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y
-    # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-    Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y
-    Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
-    # (rrr2-K3) component along the reference direction
-    px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
-    # (rrr2-K6) factor of the cosine in the equation of joint 1
-    Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
-    # (rrr2-K4) component across the reference direction
-    py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
-    # (rrr2-K7) factor of the sine in the equation of joint 1
-    Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
-    # (rrr2-K8) squared amplitude
-    rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
-    # (rrr2-K9) discriminant
-    disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2
-    # (rrr2-K10) root, with the sign of the branch
-    root_1_rrr2 = branch_1_rrr2*sqrt(disc_1_rrr2)
-    # (rrr2-K16) from the origin of joint 2 to the connection point
-    x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x - rrr2_joint2_offset_x
-    # (rrr2-K18) cosine of the angle of joint 2 from its reference direction
-    c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x
-    # (rrr2-K19) sine of the angle of joint 2 from its reference direction
-    s_2_rrr2 = (
-    inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x
-    )
-    # (rrr2-V2) from joint 1 to the connection point, along the links
-    r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x
-    r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*rrr2_platform_joint_offset_x*s_2_rrr2
-    # (rrr2-K11) cosine of the angle of joint 1 from its reference direction
-    inv_rho2_1_rrr2 = 1.0/rho2_1_rrr2
-    c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2)
-    # (rrr2-K12) sine of the angle of joint 1 from its reference direction
-    s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2)
-    # (rrr2-V5) reciprocal vector 1
-    axis_y_rrr2_axes2_r1_x = c_1_rrr2*s_2_rrr2 - c_2_rrr2*s_1_rrr2
-    axis_y_rrr2_axes2_r1_y = c_1_rrr2*c_2_rrr2 + s_1_rrr2*s_2_rrr2
-    inv_r_1_rrr2_r0_y = 1.0/r_1_rrr2_r0_y
-    w_1_rrr2_t = (
-    inv_r_1_rrr2_r0_y*(axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx +
-        axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy)
-    )
-    w_1_rrr2_t_2 = (
-    inv_r_1_rrr2_r0_y*(axis_y_rrr2_axes2_r1_x*rrr2_base_frame_xx +
-        axis_y_rrr2_axes2_r1_y*rrr2_base_frame_xy)
-    )
-    # (C2) rms distance of the platform points from their centroid
-    spread_t_4 = b_c_x - rrr2_platform_point_x
-    spread_t_5 = b_c_y - rrr2_platform_point_y
-    spread_t_6 = spread_t_4*spread_t_4 + spread_t_5*spread_t_5
-    # (rrr2-K8) squared amplitude
-    pivot_size_3 = abs(rho2_1_rrr2)
-    # (rrr2-V5) reciprocal vector 1
-    pivot_size_4 = abs(r_1_rrr2_r0_y)
-    # (rrr2-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
-    least_pivots_2 = least(sqrt(inv_rho2_1_rrr2_t_4*pivot_size_3), inv_size_rrr2*pivot_size_4)
-    ok = (abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2 >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2)
-    return (ok, (spread_t_6,), (-w_1_rrr2_t, w_1_rrr2_t_2, least_pivots_2, disc_1_rrr2,),)
-
-
-def _condition_after(c, s, t, f):
-    sqrt = f.sqrt
-    total_rrr, total_rrr2 = t
-    # (C2) rms distance of the platform points from their centroid
-    spread = sqrt(0.5*total_rrr + 0.5*total_rrr2)
-    ok = True
-    return (ok, (spread,),)
-
-
-_DYNAMICS = _Plan(
-    inputs=('X', 'V'),
-arrays=(('M', (2, 2)), ('Z', (2,)), ('H', (2, 3))),
-    before=_Part(
-        _dynamics_before,
-(),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _dynamics_rrr,
-            "rrr",
-(),
-('J_1_rrr_zz', 'J_2_rrr_zz', 'Jc_1_rrr_zz', 'Kd_1_rrr_t_2', 'Kd_1_rrr_t_3', 'branch_1_rrr',
-            'd_Gamma_1_rrr_t', 'd_Gamma_1_rrr_y', 'd_c_rrr_yy', 'd_phi_2_rrr_t', 'g_r0_x',
-            'g_r0_y', 'h_1_rrr_x', 'h_1_rrr_y', 'h_2_rrr_x', 'h_2_rrr_y', 'inv_Kd_1_rrr_t_5',
-            'inv_rrr_platform_joint_offset_x', 'inv_uu_2_rrr_t', 'rho2_1_rrr_t',
-            'rrr_base_frame_xx', 'rrr_base_frame_xy', 'rrr_base_frame_yx', 'rrr_base_frame_yy',
-            'rrr_base_point_x', 'rrr_base_point_y', 'rrr_joint2_offset_x',
-            'rrr_platform_joint_offset_x', 'rrr_platform_point_x', 'rrr_platform_point_y',
-            'size_rrr'),
-(),
-(0, 1, 2, 3),
-            5,
-            (
-(2, (0,)),
-(2, (3,)),
-(2, (1,)),
-(2, (4,)),
-            ),
-        ),
-        _LegPart(
-            _dynamics_rrr2,
-            "rrr2",
-(),
-('J_1_rrr2_zz', 'J_2_rrr2_zz', 'Jc_1_rrr2_zz', 'Kd_1_rrr2_t_2', 'Kd_1_rrr2_t_3', 'branch_1_rrr2',
-            'd_Gamma_1_rrr2_t', 'd_Gamma_1_rrr2_y', 'd_c_rrr2_yy', 'd_phi_2_rrr2_t', 'g_r0_x_2',
-            'g_r0_y_2', 'h_1_rrr2_x', 'h_1_rrr2_y', 'h_2_rrr2_x', 'h_2_rrr2_y',
-            'inv_Kd_1_rrr2_t_5', 'inv_rrr2_platform_joint_offset_x', 'inv_uu_2_rrr2_t',
-            'rho2_1_rrr2_t', 'rrr2_base_frame_xx', 'rrr2_base_frame_xy', 'rrr2_base_frame_yx',
-            'rrr2_base_frame_yy', 'rrr2_base_point_x', 'rrr2_base_point_y',
-            'rrr2_joint2_offset_x', 'rrr2_platform_joint_offset_x', 'rrr2_platform_point_x',
-            'rrr2_platform_point_y', 'size_rrr2'),
-(),
-(0, 1, 2, 3),
-            5,
-            (
-(2, (2,)),
-(2, (5,)),
-            ),
-        ),
-    ),
-    after=_Part(
-        _dynamics_after,
-('Z_p_x', 'Z_p_y', 'm_star'),
-(),
-        (
-(0, 0), (0, 1), (0, 2), (0, 3), (1, 0), (1, 1),
-        ),
-    ),
-)
-_M = _Plan(
-    inputs=('X',),
-arrays=(('M', (2, 2)),),
-    before=_Part(
-        _M_before,
-(),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _M_rrr,
-            "rrr",
-(),
-('J_2_rrr_zz', 'Jc_1_rrr_zz', 'Kd_1_rrr_t_2', 'Kd_1_rrr_t_3', 'branch_1_rrr', 'd_Gamma_1_rrr_t',
-            'd_Gamma_1_rrr_y', 'd_c_rrr_yy', 'd_phi_2_rrr_t', 'h_2_rrr_y', 'inv_Kd_1_rrr_t_5',
-            'inv_rrr_platform_joint_offset_x', 'inv_uu_2_rrr_t', 'rho2_1_rrr_t',
-            'rrr_base_frame_xx', 'rrr_base_frame_xy', 'rrr_base_frame_yx', 'rrr_base_frame_yy',
-            'rrr_base_point_x', 'rrr_base_point_y', 'rrr_joint2_offset_x',
-            'rrr_platform_joint_offset_x', 'rrr_platform_point_x', 'rrr_platform_point_y',
-            'size_rrr'),
-(),
-(0, 1),
-            3,
-            (
-            ),
-        ),
-        _LegPart(
-            _M_rrr2,
-            "rrr2",
-(),
-('J_2_rrr2_zz', 'Jc_1_rrr2_zz', 'Kd_1_rrr2_t_2', 'Kd_1_rrr2_t_3', 'branch_1_rrr2',
-            'd_Gamma_1_rrr2_t', 'd_Gamma_1_rrr2_y', 'd_c_rrr2_yy', 'd_phi_2_rrr2_t', 'h_2_rrr2_y',
-            'inv_Kd_1_rrr2_t_5', 'inv_rrr2_platform_joint_offset_x', 'inv_uu_2_rrr2_t',
-            'rho2_1_rrr2_t', 'rrr2_base_frame_xx', 'rrr2_base_frame_xy', 'rrr2_base_frame_yx',
-            'rrr2_base_frame_yy', 'rrr2_base_point_x', 'rrr2_base_point_y',
-            'rrr2_joint2_offset_x', 'rrr2_platform_joint_offset_x', 'rrr2_platform_point_x',
-            'rrr2_platform_point_y', 'size_rrr2'),
-(),
-(0, 1),
-            3,
-            (
-            ),
-        ),
-    ),
-    after=_Part(
-        _M_after,
-('m_star',),
-(),
-        (
-(0, 0), (0, 1), (0, 2), (0, 3),
-        ),
-    ),
-)
-_Z = _Plan(
-    inputs=('X', 'V'),
-arrays=(('Z', (2,)),),
-    before=_Part(
-        _Z_before,
-(),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _Z_rrr,
-            "rrr",
-(),
-('J_1_rrr_zz', 'J_2_rrr_zz', 'Kd_1_rrr_t_2', 'Kd_1_rrr_t_3', 'branch_1_rrr', 'g_r0_x', 'g_r0_y',
-            'h_1_rrr_x', 'h_1_rrr_y', 'h_2_rrr_x', 'h_2_rrr_y', 'inv_Kd_1_rrr_t_5',
-            'inv_rrr_platform_joint_offset_x', 'inv_uu_2_rrr_t', 'rho2_1_rrr_t',
-            'rrr_base_frame_xx', 'rrr_base_frame_xy', 'rrr_base_frame_yx', 'rrr_base_frame_yy',
-            'rrr_base_point_x', 'rrr_base_point_y', 'rrr_joint2_offset_x',
-            'rrr_platform_joint_offset_x', 'rrr_platform_point_x', 'rrr_platform_point_y',
-            'size_rrr'),
-(),
-(0, 1, 2, 3),
-            2,
-            (
-            ),
-        ),
-        _LegPart(
-            _Z_rrr2,
-            "rrr2",
-(),
-('J_1_rrr2_zz', 'J_2_rrr2_zz', 'Kd_1_rrr2_t_2', 'Kd_1_rrr2_t_3', 'branch_1_rrr2', 'g_r0_x_2',
-            'g_r0_y_2', 'h_1_rrr2_x', 'h_1_rrr2_y', 'h_2_rrr2_x', 'h_2_rrr2_y',
-            'inv_Kd_1_rrr2_t_5', 'inv_rrr2_platform_joint_offset_x', 'inv_uu_2_rrr2_t',
-            'rho2_1_rrr2_t', 'rrr2_base_frame_xx', 'rrr2_base_frame_xy', 'rrr2_base_frame_yx',
-            'rrr2_base_frame_yy', 'rrr2_base_point_x', 'rrr2_base_point_y',
-            'rrr2_joint2_offset_x', 'rrr2_platform_joint_offset_x', 'rrr2_platform_point_x',
-            'rrr2_platform_point_y', 'size_rrr2'),
-(),
-(0, 1, 2, 3),
-            2,
-            (
-            ),
-        ),
-    ),
-    after=_Part(
-        _Z_after,
-('Z_p_x', 'Z_p_y'),
-(),
-        ((0, 0), (0, 1),),
-    ),
-)
-_H = _Plan(
-    inputs=('X',),
-arrays=(('H', (2, 3)),),
-    before=_Part(
-        _H_before,
-(),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _H_rrr,
-            "rrr",
-(),
-('Kd_1_rrr_t_2', 'Kd_1_rrr_t_3', 'branch_1_rrr', 'inv_Kd_1_rrr_t_5',
-            'inv_rrr_platform_joint_offset_x', 'inv_uu_2_rrr_t', 'rho2_1_rrr_t',
-            'rrr_base_frame_xx', 'rrr_base_frame_xy', 'rrr_base_frame_yx', 'rrr_base_frame_yy',
-            'rrr_base_point_x', 'rrr_base_point_y', 'rrr_joint2_offset_x',
-            'rrr_platform_joint_offset_x', 'rrr_platform_point_x', 'rrr_platform_point_y',
-            'size_rrr'),
-(),
-(0, 1),
-            0,
-            (
-(0, (0,)),
-(0, (3,)),
-(0, (1,)),
-(0, (4,)),
-            ),
-        ),
-        _LegPart(
-            _H_rrr2,
-            "rrr2",
-(),
-('Kd_1_rrr2_t_2', 'Kd_1_rrr2_t_3', 'branch_1_rrr2', 'inv_Kd_1_rrr2_t_5', 'inv_uu_2_rrr2_t',
-            'rho2_1_rrr2_t', 'rrr2_base_frame_xx', 'rrr2_base_frame_xy', 'rrr2_base_frame_yx',
-            'rrr2_base_frame_yy', 'rrr2_base_point_x', 'rrr2_base_point_y',
-            'rrr2_joint2_offset_x', 'rrr2_platform_joint_offset_x', 'rrr2_platform_point_x',
-            'rrr2_platform_point_y', 'size_rrr2'),
-(),
-(0, 1),
-            0,
-            (
-(0, (2,)),
-(0, (5,)),
-            ),
-        ),
-    ),
-)
-_REQUIRED = _Plan(
-    inputs=('X', 'V', 'A'),
-arrays=(('required', (2,)), ('H', (2, 3))),
-    before=_Part(
-        _required_before,
-('gravity_x', 'gravity_y', 'm_star'),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _required_rrr,
-            "rrr",
-('gravity_x', 'gravity_y'),
-('J_1_rrr_zz', 'J_2_rrr_zz', 'Kd_1_rrr_t_2', 'Kd_1_rrr_t_3', 'branch_1_rrr', 'g_r0_x', 'g_r0_y',
-            'h_1_rrr_x', 'h_1_rrr_y', 'h_2_rrr_x', 'h_2_rrr_y', 'inv_Kd_1_rrr_t_5',
-            'inv_rrr_platform_joint_offset_x', 'inv_uu_2_rrr_t', 'rho2_1_rrr_t',
-            'rrr_base_frame_xx', 'rrr_base_frame_xy', 'rrr_base_frame_yx', 'rrr_base_frame_yy',
-            'rrr_base_point_x', 'rrr_base_point_y', 'rrr_joint2_offset_x',
-            'rrr_platform_joint_offset_x', 'rrr_platform_point_x', 'rrr_platform_point_y',
-            'size_rrr'),
-(),
-(0, 1, 2, 3, 4, 5),
-            2,
-            (
-(1, (0,)),
-(1, (3,)),
-(1, (1,)),
-(1, (4,)),
-            ),
-        ),
-        _LegPart(
-            _required_rrr2,
-            "rrr2",
-('gravity_x', 'gravity_y'),
-('J_1_rrr2_zz', 'J_2_rrr2_zz', 'Kd_1_rrr2_t_2', 'Kd_1_rrr2_t_3', 'branch_1_rrr2', 'g_r0_x_2',
-            'g_r0_y_2', 'h_1_rrr2_x', 'h_1_rrr2_y', 'h_2_rrr2_x', 'h_2_rrr2_y',
-            'inv_Kd_1_rrr2_t_5', 'inv_rrr2_platform_joint_offset_x', 'inv_uu_2_rrr2_t',
-            'rho2_1_rrr2_t', 'rrr2_base_frame_xx', 'rrr2_base_frame_xy', 'rrr2_base_frame_yx',
-            'rrr2_base_frame_yy', 'rrr2_base_point_x', 'rrr2_base_point_y',
-            'rrr2_joint2_offset_x', 'rrr2_platform_joint_offset_x', 'rrr2_platform_point_x',
-            'rrr2_platform_point_y', 'size_rrr2'),
-(),
-(0, 1, 2, 3, 4, 5),
-            2,
-            (
-(1, (2,)),
-(1, (5,)),
-            ),
-        ),
-    ),
-    after=_Part(
-        _required_after,
-(),
-(6, 7),
-        ((0, 0), (0, 1),),
-    ),
-)
-_INVERSE_KINEMATICS = _Plan(
-    inputs=('X',),
-arrays=(('q', (4,)),),
-    before=_Part(
-        _inverse_kinematics_before,
-(),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _inverse_kinematics_rrr,
-            "rrr",
-(),
-('Kd_1_rrr_t_2', 'Kd_1_rrr_t_3', 'branch_1_rrr', 'inv_Kd_1_rrr_t_5', 'inv_uu_2_rrr_t',
-            'rho2_1_rrr_t', 'rrr_base_frame_xx', 'rrr_base_frame_xy', 'rrr_base_frame_yx',
-            'rrr_base_frame_yy', 'rrr_base_point_x', 'rrr_base_point_y', 'rrr_joint2_offset_x',
-            'rrr_platform_joint_offset_x', 'rrr_platform_point_x', 'rrr_platform_point_y'),
-(),
-(0, 1),
-            0,
-            (
-(0, (0,)),
-(0, (1,)),
-            ),
-        ),
-        _LegPart(
-            _inverse_kinematics_rrr2,
-            "rrr2",
-(),
-('Kd_1_rrr2_t_2', 'Kd_1_rrr2_t_3', 'branch_1_rrr2', 'inv_Kd_1_rrr2_t_5', 'inv_uu_2_rrr2_t',
-            'rho2_1_rrr2_t', 'rrr2_base_frame_xx', 'rrr2_base_frame_xy', 'rrr2_base_frame_yx',
-            'rrr2_base_frame_yy', 'rrr2_base_point_x', 'rrr2_base_point_y',
-            'rrr2_joint2_offset_x', 'rrr2_platform_joint_offset_x', 'rrr2_platform_point_x',
-            'rrr2_platform_point_y'),
-(),
-(0, 1),
-            0,
-            (
-(0, (2,)),
-(0, (3,)),
-            ),
-        ),
-    ),
-)
-_JOINT_RATES = _Plan(
-    inputs=('X', 'V'),
-arrays=(('qd', (4,)),),
-    before=_Part(
-        _joint_rates_before,
-(),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _joint_rates_rrr,
-            "rrr",
-(),
-('Kd_1_rrr_t_2', 'Kd_1_rrr_t_3', 'branch_1_rrr', 'inv_Kd_1_rrr_t_5',
-            'inv_rrr_platform_joint_offset_x', 'inv_uu_2_rrr_t', 'rho2_1_rrr_t',
-            'rrr_base_frame_xx', 'rrr_base_frame_xy', 'rrr_base_frame_yx', 'rrr_base_frame_yy',
-            'rrr_base_point_x', 'rrr_base_point_y', 'rrr_joint2_offset_x',
-            'rrr_platform_joint_offset_x', 'rrr_platform_point_x', 'rrr_platform_point_y',
-            'size_rrr'),
-(),
-(0, 1, 2, 3),
-            0,
-            (
-(0, (0,)),
-(0, (1,)),
-            ),
-        ),
-        _LegPart(
-            _joint_rates_rrr2,
-            "rrr2",
-(),
-('Kd_1_rrr2_t_2', 'Kd_1_rrr2_t_3', 'branch_1_rrr2', 'inv_Kd_1_rrr2_t_5',
-            'inv_rrr2_platform_joint_offset_x', 'inv_uu_2_rrr2_t', 'rho2_1_rrr2_t',
-            'rrr2_base_frame_xx', 'rrr2_base_frame_xy', 'rrr2_base_frame_yx',
-            'rrr2_base_frame_yy', 'rrr2_base_point_x', 'rrr2_base_point_y',
-            'rrr2_joint2_offset_x', 'rrr2_platform_joint_offset_x', 'rrr2_platform_point_x',
-            'rrr2_platform_point_y', 'size_rrr2'),
-(),
-(0, 1, 2, 3),
-            0,
-            (
-(0, (2,)),
-(0, (3,)),
-            ),
-        ),
-    ),
-)
-_JOINT_ACCELERATIONS = _Plan(
-    inputs=('X', 'V', 'A'),
-arrays=(('qdd', (4,)),),
-    before=_Part(
-        _joint_accelerations_before,
-(),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _joint_accelerations_rrr,
-            "rrr",
-(),
-('Kd_1_rrr_t_2', 'Kd_1_rrr_t_3', 'branch_1_rrr', 'inv_Kd_1_rrr_t_5',
-            'inv_rrr_platform_joint_offset_x', 'inv_uu_2_rrr_t', 'rho2_1_rrr_t',
-            'rrr_base_frame_xx', 'rrr_base_frame_xy', 'rrr_base_frame_yx', 'rrr_base_frame_yy',
-            'rrr_base_point_x', 'rrr_base_point_y', 'rrr_joint2_offset_x',
-            'rrr_platform_joint_offset_x', 'rrr_platform_point_x', 'rrr_platform_point_y',
-            'size_rrr'),
-(),
-(0, 1, 2, 3, 4, 5),
-            0,
-            (
-(0, (0,)),
-(0, (1,)),
-            ),
-        ),
-        _LegPart(
-            _joint_accelerations_rrr2,
-            "rrr2",
-(),
-('Kd_1_rrr2_t_2', 'Kd_1_rrr2_t_3', 'branch_1_rrr2', 'inv_Kd_1_rrr2_t_5',
-            'inv_rrr2_platform_joint_offset_x', 'inv_uu_2_rrr2_t', 'rho2_1_rrr2_t',
-            'rrr2_base_frame_xx', 'rrr2_base_frame_xy', 'rrr2_base_frame_yx',
-            'rrr2_base_frame_yy', 'rrr2_base_point_x', 'rrr2_base_point_y',
-            'rrr2_joint2_offset_x', 'rrr2_platform_joint_offset_x', 'rrr2_platform_point_x',
-            'rrr2_platform_point_y', 'size_rrr2'),
-(),
-(0, 1, 2, 3, 4, 5),
-            0,
-            (
-(0, (2,)),
-(0, (3,)),
-            ),
-        ),
-    ),
-)
-_LEGS_FORCE = _Plan(
-    inputs=('X', 'V', 'A'),
-arrays=(('leg_force', (2, 3)), ('drive', (3, 3))),
-    before=_Part(
-        _legs_before,
-(),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _legs_rrr,
-            "rrr",
-('gravity_x', 'gravity_y'),
-('J_1_rrr_zz', 'J_2_rrr_zz', 'Kd_1_rrr_t_2', 'Kd_1_rrr_t_3', 'branch_1_rrr', 'g_r0_x', 'g_r0_y',
-            'h_1_rrr_x', 'h_1_rrr_y', 'h_2_rrr_x', 'h_2_rrr_y', 'inv_Kd_1_rrr_t_5',
-            'inv_rrr_platform_joint_offset_x', 'inv_uu_2_rrr_t', 'rho2_1_rrr_t',
-            'rrr_base_frame_xx', 'rrr_base_frame_xy', 'rrr_base_frame_yx', 'rrr_base_frame_yy',
-            'rrr_base_point_x', 'rrr_base_point_y', 'rrr_joint2_offset_x', 'rrr_link2_mass',
-            'rrr_platform_joint_offset_x', 'rrr_platform_point_x', 'rrr_platform_point_y',
-            'size_rrr'),
-(),
-(0, 1, 2, 3, 4, 5),
-            0,
-            (
-(0, (0,)),
-(0, (1,)),
-(1, (0,)),
-(1, (1,)),
-(1, (3,)),
-(1, (4,)),
-            ),
-        ),
-        _LegPart(
-            _legs_rrr2,
-            "rrr2",
-('gravity_x', 'gravity_y'),
-('J_1_rrr2_zz', 'J_2_rrr2_zz', 'Kd_1_rrr2_t_2', 'Kd_1_rrr2_t_3', 'branch_1_rrr2', 'g_r0_x_2',
-            'g_r0_y_2', 'h_1_rrr2_x', 'h_1_rrr2_y', 'h_2_rrr2_x', 'h_2_rrr2_y',
-            'inv_Kd_1_rrr2_t_5', 'inv_rrr2_platform_joint_offset_x', 'inv_uu_2_rrr2_t',
-            'rho2_1_rrr2_t', 'rrr2_base_frame_xx', 'rrr2_base_frame_xy', 'rrr2_base_frame_yx',
-            'rrr2_base_frame_yy', 'rrr2_base_point_x', 'rrr2_base_point_y',
-            'rrr2_joint2_offset_x', 'rrr2_link2_mass', 'rrr2_platform_joint_offset_x',
-            'rrr2_platform_point_x', 'rrr2_platform_point_y', 'size_rrr2'),
-(),
-(0, 1, 2, 3, 4, 5),
-            0,
-            (
-(0, (3,)),
-(0, (4,)),
-(1, (6,)),
-(1, (7,)),
-            ),
-        ),
-    ),
-)
-_POTENTIAL = _Plan(
-    inputs=('X',),
-arrays=(('potential', (1,)),),
-    before=_Part(
-        _potential_before,
-('gravity_x', 'gravity_y', 'h_star_x', 'h_star_y', 'm_star'),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _potential_rrr,
-            "rrr",
-(),
-('Kd_1_rrr_t_2', 'Kd_1_rrr_t_3', 'b_rrr_r0_x', 'b_rrr_r0_y', 'branch_1_rrr', 'g_r0_x', 'g_r0_y',
-            'h_1_rrr_x', 'h_1_rrr_y', 'h_2_rrr_x', 'h_2_rrr_y', 'inv_Kd_1_rrr_t_5',
-            'inv_uu_2_rrr_t', 'rho2_1_rrr_t', 'rrr_base_frame_xx', 'rrr_base_frame_xy',
-            'rrr_base_frame_yx', 'rrr_base_frame_yy', 'rrr_base_point_x', 'rrr_base_point_y',
-            'rrr_joint2_offset_x', 'rrr_link1_mass', 'rrr_platform_joint_offset_x',
-            'rrr_platform_point_x', 'rrr_platform_point_y'),
-(),
-(0, 1),
-            1,
-            (
-            ),
-        ),
-        _LegPart(
-            _potential_rrr2,
-            "rrr2",
-(),
-('Kd_1_rrr2_t_2', 'Kd_1_rrr2_t_3', 'b_rrr2_r0_x', 'b_rrr2_r0_y', 'branch_1_rrr2', 'g_r0_x_2',
-            'g_r0_y_2', 'h_1_rrr2_x', 'h_1_rrr2_y', 'h_2_rrr2_x', 'h_2_rrr2_y',
-            'inv_Kd_1_rrr2_t_5', 'inv_uu_2_rrr2_t', 'rho2_1_rrr2_t', 'rrr2_base_frame_xx',
-            'rrr2_base_frame_xy', 'rrr2_base_frame_yx', 'rrr2_base_frame_yy', 'rrr2_base_point_x',
-            'rrr2_base_point_y', 'rrr2_joint2_offset_x', 'rrr2_link1_mass',
-            'rrr2_platform_joint_offset_x', 'rrr2_platform_point_x', 'rrr2_platform_point_y'),
-(),
-(0, 1),
-            1,
-            (
-            ),
-        ),
-    ),
-    after=_Part(
-        _potential_after,
-(),
-(2,),
-        ((0, 0),),
-    ),
-)
-_CONDITION = _Plan(
-    inputs=('X',),
-arrays=(('H', (2, 3)), ('lengths', (2,)), ('pivots', (2,)), ('reach', (2,))),
-    before=_Part(
-        _condition_before,
-('legs_size',),
-        None,
-        ((1, 1),),
-    ),
-    legs=(
-        _LegPart(
-            _condition_rrr,
-            "rrr",
-('b_c_x', 'b_c_y'),
-('Kd_1_rrr_t_2', 'Kd_1_rrr_t_3', 'branch_1_rrr', 'inv_Kd_1_rrr_t_5', 'inv_rho2_1_rrr_t_4',
-            'inv_rrr_platform_joint_offset_x', 'inv_size_rrr', 'inv_uu_2_rrr_t', 'rho2_1_rrr_t',
-            'rrr_base_frame_xx', 'rrr_base_frame_xy', 'rrr_base_frame_yx', 'rrr_base_frame_yy',
-            'rrr_base_point_x', 'rrr_base_point_y', 'rrr_joint2_offset_x',
-            'rrr_platform_joint_offset_x', 'rrr_platform_point_x', 'rrr_platform_point_y',
-            'size_rrr'),
-(),
-(0, 1),
-            1,
-            (
-(0, (0,)),
-(0, (3,)),
-(0, (1,)),
-(0, (4,)),
-(2, (0,)),
-(3, (0,)),
-            ),
-        ),
-        _LegPart(
-            _condition_rrr2,
-            "rrr2",
-('b_c_x', 'b_c_y'),
-('Kd_1_rrr2_t_2', 'Kd_1_rrr2_t_3', 'branch_1_rrr2', 'inv_Kd_1_rrr2_t_5', 'inv_rho2_1_rrr2_t_4',
-            'inv_size_rrr2', 'inv_uu_2_rrr2_t', 'rho2_1_rrr2_t', 'rrr2_base_frame_xx',
-            'rrr2_base_frame_xy', 'rrr2_base_frame_yx', 'rrr2_base_frame_yy', 'rrr2_base_point_x',
-            'rrr2_base_point_y', 'rrr2_joint2_offset_x', 'rrr2_platform_joint_offset_x',
-            'rrr2_platform_point_x', 'rrr2_platform_point_y', 'size_rrr2'),
-(),
-(0, 1),
-            1,
-            (
-(0, (2,)),
-(0, (5,)),
-(2, (1,)),
-(3, (1,)),
-            ),
-        ),
-    ),
-    after=_Part(
-        _condition_after,
-(),
-(),
-        ((1, 0),),
-    ),
-)
-_DEFAULT = Parameters()
+        results = [a[..., 0] for a in steps(_Floats(p, 1), *states)]
+    if all(all(map(math.isfinite, v.ravel().tolist())) for v in (*compress(given, read), *results)):
+        return [np.array(a)[()] for a in results]
+    return [np.full(a.shape, np.nan)[()] for a in results]
+
+
+def _many(steps, p, lead, given, shapes, read, mode):
+    """Results at many states, block by block."""
+    count = math.prod(lead)
+    flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
+    possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
+    with np.errstate(all="ignore"):
+        for first in range(0, max(count, 1), _BLOCK):
+            block = slice(first, min(first + _BLOCK, count))
+            states = [_states_last(v[block]) for v in flat]
+            m, good = mode(p, block.stop - first), possible[block]
+            found = steps(m, *states)
+            if not outputs:
+                outputs = [np.empty((count, *a.shape[:-1])) for a in found]
+            _all_finite(compress(states, read), good)
+            if mode is _Judged:
+                m.failed[3] |= ~good
+            _all_finite(found, good)
+            if mode is _Judged:
+                status[block] = m.status(good)
+                good[:] = status[block] == 0
+            for output, a in zip(outputs, found):
+                output[block] = a.transpose(a.ndim - 1, *range(a.ndim - 1))
+    for output in outputs:
+        output[~possible] = np.nan
+    outputs += [status] if mode is _Judged else []
+    return [a.reshape(lead + a.shape[1:])[()] for a in outputs]
+
+
+def _states_last(a):
+    """A contiguous array (*shape, states) of one (states, *shape)."""
+    return np.ascontiguousarray(a.transpose(*range(1, a.ndim), 0))
+
+
+def _all_finite(arrays, good):
+    """Clear the flags of states in which some entry is not finite."""
+    for a in arrays:
+        good &= np.isfinite(a).all(axis=tuple(range(a.ndim - 1)))
+
+
+def _with_forces(a, amounts, directions, legs):
+    """a, to whose row of a leg its directions times amounts are added."""
+    result = np.array(a)
+    for k, leg in enumerate(legs):
+        result[leg] += amounts[k] * directions[k]
+    return result
+
+
+def _wrapped(a, places):
+    """a, some entries turned into (-pi, pi]."""
+    result = np.array(a)
+    result[places] = np.pi - np.remainder(np.pi - a[places], 2.0 * np.pi)
+    return result
+
+
+def _scaled(q):
+    """Quaternions with largest entry 1, so that squares of tiny ones keep their digits."""
+    size = np.max(np.abs(q), axis=0)
+    return q / np.where(np.isfinite(np.sum(q * q, axis=0)), size, np.nan)
+
+
+def _unit(q):
+    """Quaternions of length 1."""
+    q = _scaled(q)
+    return q / np.sqrt(np.sum(q * q, axis=0))
+
+
+def _turned(q, b):
+    """Quaternions turned by rotation vectors b."""
+    angle, q = np.sqrt(np.sum(b * b, axis=0)), _unit(q)
+    v, c = b * (0.5 * np.sinc(angle / (2.0 * np.pi))), np.cos(0.5 * angle)
+    vector = c * q[:3] + q[3] * v + np.cross(v, q[:3], axis=0)
+    return np.concatenate((vector, (c * q[3] - np.sum(v * q[:3], axis=0))[None]))
+
+
+def _moved(X, step):
+    """X moved by small displacements."""
+    if _Q is None:
+        return X + step
+    q = _turned(X[_Q : _Q + 4], step[_Q : _Q + 3])
+    return np.concatenate((X[:_Q] + step[:_Q], q, X[_Q + 4 :] + step[_Q + 3 :]))
 
 
 _PIVOT = 1.8e-12  # a pivot below this fraction of its row counts as zero (epsilon^(3/4))
@@ -3714,20 +1083,34 @@ _CLEARLY = 2.0  # rows change places only for a pivot that is larger by this fac
 
 
 def _solve(a, b):
-    """Solve a x = b, a (..., n, n), b (..., n): rows scaled, partial pivoting; NaN if singular."""
-    lead = np.broadcast_shapes(a.shape[:-2], b.shape[:-1])
-    n = a.shape[-1]
-    count = int(np.prod(lead, dtype=int))
-    a = np.broadcast_to(a, (*lead, n, n)).reshape(count, n, n).copy()
-    b = np.broadcast_to(b, (*lead, n)).reshape(count, n).copy()
-    if count <= _FEW:
-        rows = [_solve_one(matrix, right) for matrix, right in zip(a.tolist(), b.tolist())]
-        x = np.array(rows).reshape(count, n)
-    else:
-        with np.errstate(all="ignore"):
-            x = _solve_block(a, b)
-    x[~np.isfinite(x).all(axis=1)] = np.nan
-    return x.reshape(*lead, n)
+    """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
+    n, states = b.shape
+    if 0 < states <= _FEW:
+        matrices, rights = np.moveaxis(a, -1, 0).tolist(), b.T.tolist()
+        return np.array([_solve_one(*each) for each in zip(matrices, rights)]).T.reshape(n, states)
+    size = np.max(np.abs(a), axis=1, initial=0.0)
+    good = np.all((size > 0.0) & np.isfinite(size), axis=0)
+    rows = np.concatenate((a, b[:, None]), axis=1)
+    rows /= size[:, None]
+    for k in range(n):
+        column = np.abs(rows[k:, k])
+        best = np.argmax(column, axis=0)
+        at = np.flatnonzero(best)
+        at = at[column[best[at], at] > _CLEARLY * column[0, at]]
+        if at.size:
+            other = k + best[at]
+            upper, lower = rows[k, k:, at], rows[other, k:, at]
+            rows[k, k:, at], rows[other, k:, at] = lower, upper
+        pivot = rows[k, k]
+        good &= np.abs(pivot) > _PIVOT
+        factor = rows[k + 1 :, k] / pivot
+        rows[k + 1 :, k + 1 :] -= factor[:, None] * rows[k, k + 1 :]
+    x = np.empty((n, states))
+    for k in reversed(range(n)):
+        known = np.einsum("js,js->s", rows[k, k + 1 : n], x[k + 1 :])
+        x[k] = (rows[k, n] - known) / rows[k, k]
+    x[:, ~(good & np.isfinite(x).all(axis=0))] = np.nan
+    return x
 
 
 def _solve_one(a, b):
@@ -3752,306 +1135,2923 @@ def _solve_one(a, b):
     x = [0.0] * n
     for k in reversed(range(n)):
         x[k] = (a[k][n] - sum(a[k][j] * x[j] for j in range(k + 1, n))) / a[k][k]
+    return x if all(map(math.isfinite, x)) else failure
+
+
+def _matrices(a, *others):
+    """Matrices with the states first, zero where something is not finite; and where that is."""
+    bad = ~np.isfinite(a).all(axis=(0, 1))
+    for b in others:
+        bad |= ~np.isfinite(b).all(axis=0)
+    a = np.moveaxis(a, -1, 0)
+    return (np.where(bad[:, None, None], 0.0, a) if bad.any() else a), bad
+
+
+def _row_sizes(a):
+    """The largest entry of every row; one for rows of zeros."""
+    size = np.max(np.abs(a), axis=-1, keepdims=True, initial=0.0)
+    return np.where(size > 0.0, size, 1.0)
+
+
+def _least_norm(a, b):
+    """The least x with a x = b, rows of a independent; NaN if they are dependent."""
+    a, bad = _matrices(a, b)
+    size = _row_sizes(a)
+    u, s, vt = np.linalg.svd(a / size, full_matrices=False)
+    y = (np.swapaxes(u, -1, -2) @ (b.T / size[..., 0])[..., None]) / s[..., None]
+    x = (np.swapaxes(vt, -1, -2) @ y)[..., 0].T
+    x[:, bad | ~(s[:, -1] > _PIVOT * s[:, 0])] = np.nan
     return x
 
 
-def _solve_block(a, b):
-    """The same for many systems, (states, n, n) and (states, n)."""
-    states, n = b.shape
-    size = np.max(np.abs(a), axis=2, keepdims=True)
-    good = np.all((size > 0.0) & np.isfinite(size), axis=(1, 2))
-    a = np.concatenate((a, b[:, :, None]), axis=2) / size
-    which = np.arange(states)
-    for k in range(n):
-        column = np.abs(a[:, k:, k])
-        best = np.argmax(column, axis=1)
-        best = k + np.where(column[which, best] > _CLEARLY * column[:, 0], best, 0)
-        a[which, k], a[which, best] = a[which, best], a[which, k].copy()
-        good &= np.abs(a[:, k, k]) > _PIVOT
-        factor = a[:, k + 1 :, k] / a[:, k, k, None]
-        a[:, k + 1 :] -= factor[:, :, None] * a[:, k, None]
-    x = np.zeros((states, n))
-    for k in reversed(range(n)):
-        x[:, k] = (a[:, k, n] - np.sum(a[:, k, k + 1 : n] * x[:, k + 1 :], axis=1)) / a[:, k, k]
-    x[~good] = np.nan
-    return x
-
-
-def M(X, p=None):
-    """Inertia matrix (..., NV, NV) at X (..., NQ)."""
-    return _evaluate(_M, p, X=_vector("M", "X", X, NQ))[0]
-
-
-def Z(X, V, p=None):
-    """Velocity and gravity terms (..., NV) at X (..., NQ), V (..., NV)."""
-    return _evaluate(_Z, p, X=_vector("Z", "X", X, NQ), V=_vector("Z", "V", V, NV))[0]
-
-
-def H(X, p=None):
-    """Force transformation (..., NV, NU): actuators to task space."""
-    return _evaluate(_H, p, X=_vector("H", "X", X, NQ))[0]
-
-
-def dynamics(X, V, p=None):
-    """M, Z and H together, sharing the work."""
-    X, V = _vector("dynamics", "X", X, NQ), _vector("dynamics", "V", V, NV)
-    return tuple(_evaluate(_DYNAMICS, p, X=X, V=V)[:3])
-
-
-def _external(function, wrench):
-    """The wrench (..., NW) as a generalised force (..., NV); extra coordinates get none."""
-    if wrench is None:
-        return np.zeros(NV)
-    wrench = _vector(function, "wrench", wrench, NW)
-    return np.concatenate((wrench, np.zeros((*wrench.shape[:-1], NV - NW))), axis=-1)
-
-
-def _together(failed, *arrays):
-    """The arrays with NaN in every row in which one of them failed."""
-    for array, axes in arrays:
-        array[np.broadcast_to(failed, array.shape[: array.ndim - axes])] = np.nan
-    return [array for array, _ in arrays]
-
-
-def _known(array, axes, *inputs):
-    """The array, NaN in every row in which one of its entries or an input is not finite."""
-    failed = ~np.isfinite(array).all(axis=tuple(range(-axes, 0)))
-    for value in inputs:
-        failed = failed | ~np.isfinite(value).all(axis=-1)
-    return _together(failed, (array, axes))[0]
-
-
-def _weights(weights):
-    """The weights (..., NU) of the drives."""
-    if weights is None:
-        return np.ones(NU)
-    weights = _vector("inverse_dynamics", "weights", weights, NU)
-    if not np.all((weights > 0.0) & (weights < np.inf)):
-        raise ValueError("inverse_dynamics: weights must be positive and finite")
-    return weights
-
-
-def inverse_dynamics(X, V, A, p=None, *, wrench=None, weights=None):
-    """Actuator forces tau (..., NU) for the acceleration A (..., NV), by Eq. 3.
-
-    The wrench (..., NW) acts on the platform. weights (..., NU) > 0: least sum of weights tau^2.
-    """
-    X, V = _vector("inverse_dynamics", "X", X, NQ), _vector("inverse_dynamics", "V", V, NV)
-    A = _vector("inverse_dynamics", "A", A, NV)
-    weights, external = _weights(weights), _external("inverse_dynamics", wrench)
-    _lead(X=X, V=V, A=A, wrench=external, weights=weights)
-    required, matrix, *rest = _evaluate(_REQUIRED, p, X=X, V=V, A=A)
-    force = required - external
-    return _drive_forces(matrix, rest[0] if rest else None, force, weights)
-
-
-def forward_dynamics(X, V, tau, p=None, *, wrench=None):
-    """Acceleration A (..., NV) under actuator forces tau (..., NU) and the wrench."""
-    X, V = _vector("forward_dynamics", "X", X, NQ), _vector("forward_dynamics", "V", V, NV)
-    tau, external = _vector("forward_dynamics", "tau", tau, NU), _external("forward_dynamics", wrench)
-    _lead(X=X, V=V, tau=tau, wrench=external)
-    inertia, bias, matrix, *rest = _evaluate(_DYNAMICS, p, X=X, V=V)
-    with np.errstate(all="ignore"):
-        force = (matrix @ tau[..., None])[..., 0] + external - bias
-    return _solve(inertia, force)
-
-
-def complete_acceleration(X, V, A, p=None, *, wrench=None):
-    """A: there are no passive extra coordinates, whose accelerations would have to follow."""
-    X, V = _vector("complete_acceleration", "X", X, NQ), _vector("complete_acceleration", "V", V, NV)
-    A, external = _vector("complete_acceleration", "A", A, NV), _external("complete_acceleration", wrench)
-    p, lead = _given(p), _lead(X=X, V=V, A=A, wrench=external)
-    return _known(np.array(np.broadcast_to(A, (*lead, NV))), 1)
-
-
-def _drive_forces(matrix, directions, force, weights):
-    """tau of least weighted norm with H tau = force."""
-    rows = list(_DRIVEN_ROWS)
-    scale = 1.0 / np.sqrt(weights)
-    h, f = matrix[..., rows, :] * scale[..., None, :], force[..., rows]
-    return scale * _least_norm(h, f)
-
-
-def _least_norm(h, f):
-    """Least-norm solution of h tau = f with independent rows; NaN if they are dependent."""
-    lead = np.broadcast_shapes(h.shape[:-2], f.shape[:-1])
-    h, f = np.broadcast_to(h, lead + h.shape[-2:]), np.broadcast_to(f, lead + f.shape[-1:])
-    bad = ~(np.isfinite(h).all(axis=(-1, -2)) & np.isfinite(f).all(axis=-1))
-    h = np.where(bad[..., None, None], 0.0, h)
-    size = np.max(np.abs(h), axis=-1, keepdims=True)
-    size = np.where(size > 0.0, size, 1.0)
-    u, s, vt = np.linalg.svd(h / size, full_matrices=False)
-    bad |= ~(s[..., -1] > _PIVOT * s[..., 0])
-    with np.errstate(all="ignore"):
-        y = (np.swapaxes(u, -1, -2) @ (f / size[..., 0])[..., None]) / s[..., None]
-        tau = (np.swapaxes(vt, -1, -2) @ y)[..., 0]
-    tau[bad] = np.nan
-    return tau
-
-
-def null_space(X, p=None):
-    """Orthonormal basis (..., NU, 1) of the tau with H tau = 0."""
-    matrix = H(X, p)
-    bad = np.isnan(matrix).any(axis=(-1, -2))
-    _, _, vt = np.linalg.svd(np.where(bad[..., None, None], 0.0, matrix))
-    basis = np.array(np.swapaxes(vt[..., 2:, :], -1, -2))
-    basis[bad] = np.nan
+def _null_basis(a, rank):
+    """Orthonormal columns x with a x = 0, for a of so high a rank."""
+    a, bad = _matrices(a)
+    _, _, vt = np.linalg.svd(a)
+    basis = vt[:, rank:].transpose(2, 1, 0).copy()
+    basis[..., bad] = np.nan
     return basis
 
 
-_MOMENT_ROWS = ()  # rows of H that are moments
+def _singular_values(a):
+    """Singular values, in descending order."""
+    a, bad = _matrices(a)
+    values = np.linalg.svd(a, compute_uv=False).T.copy()
+    values[:, bad] = np.nan
+    return values
 
 
-def condition(X, p=None, *, length=None):
-    """How far a pose is from singularities: sigma (..., 2), legs (..., 2), status (...).
+def _least_squares(a, b, least):
+    """x of least norm with the least a x - b; singular values below a fraction count as zero."""
+    a, bad = _matrices(a, b)
+    x = (np.linalg.pinv(a, rcond=least) @ b.T[..., None])[..., 0].T
+    x[:, bad] = np.nan
+    return x
 
-    sigma: singular values of H in descending order, moment rows divided by `length` [m], as a
-    rule the rms distance of the platform points from their centroid (where they coincide, the
-    rms size of the legs).  legs: for every leg the least tested pivot as a fraction of its scale;
-    a leg is refused at 1.5e-8.  status: 0 OK, 1 unreachable, 2 singular leg, 3 invalid, 4 not
-    converged, as in C; sigma and legs are NaN where it is not 0.
+
+def _search(m, residual, slope, X, given, guess, halving):
+    """The pose at which residual(mode, X, *given) vanishes, by Gauss-Newton from X.
+
+    slope(mode, X, *guess) is its derivative, transposed, negative.  Steps are halved until the
+    residual is smaller, or taken as they are.  NaN where no pose is found.
     """
-    return _condition("condition", X, p, length)
+    X = np.array(X)
+    gap = np.array(_at(m, residual, X, given, slice(None)))
+    size = np.max(np.abs(gap), axis=0, initial=0.0)
+    open_ = np.isfinite(size) & np.isfinite(X).all(axis=0)
+    size[~open_] = np.inf
+    for _ in range(50):
+        at = np.flatnonzero(open_ & (size >= 1e-14))
+        if not at.size:
+            break
+        a = _at(m, slope, X, guess, at)
+        step = _least_squares(np.swapaxes(a, 0, 1), gap[:, at], 1e-10)
+        stopped = ~np.isfinite(step).all(axis=0)
+        size[at[stopped]] = np.inf
+        open_[at[stopped]] = False
+        at, step = at[~stopped], step[:, ~stopped]
+        for _ in range(12 if halving else 1):
+            trial = np.array(X)
+            trial[:, at] = _moved(X[:, at], step)
+            trial_gap = _at(m, residual, trial, given, at)
+            trial_size = np.max(np.abs(trial_gap), axis=0, initial=0.0)
+            good = trial_size < size[at] if halving else np.ones(at.size, dtype=bool)
+            taken = at[good]
+            X[:, taken], gap[:, taken], size[taken] = trial[:, taken], trial_gap[:, good], trial_size[good]
+            if not halving:
+                lost = ~np.isfinite(size[taken])
+                size[taken[lost]] = np.inf
+                open_[taken[lost | (np.max(np.abs(step), axis=0) < 0.1 * 1e-14)]] = False
+            at, step = at[~good], 0.5 * step[:, ~good]
+            if not at.size:
+                break
+        open_[at] = False
+    X[:, ~(size < 1e-09)] = np.nan
+    return X
 
 
-def _condition(name, X, p, length, columns=NU):
-    """sigma of the first columns of H, margins of the legs, status codes."""
-    X = _vector(name, "X", X, NQ)
-    p = _given(p)
-    if length is not None:
-        size = _numbers(name, "length", length)
-        if size.shape or not 0.0 < size < np.inf:
-            raise ValueError(f"{name}: length is {length!r}, expected a positive number")
-    lead = X.shape[:-1]
-    vectors = {"X": X.reshape(-1, NQ)}
-    states = len(vectors["X"])
-    made = [np.zeros((states, int(np.prod(shape, dtype=int)))) for _, shape in _CONDITION.arrays]
-    flat = [np.ascontiguousarray(vectors[k].T) for k in _CONDITION.inputs]
-    with np.errstate(all="ignore"):
-        given = _CONDITION.before.function(_CONDITION.constants(p)[0], *flat, _Arrays)[0]
-        _run_block(_CONDITION, p, flat, made)
-        found = {n: v.reshape(states, *s) for v, (n, s) in zip(made, _CONDITION.arrays)}
-        spread, legs_size = found["lengths"].T
-        if length is None:
-            length = np.where(spread > 1e-9 * legs_size, spread, legs_size)[:, None, None]
-        matrix = found["H"]
-        matrix[:, list(_MOMENT_ROWS)] /= length
-        finite = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(found["pivots"]).all(axis=1)
-        status = np.select(
-            [
-                ~(np.isfinite(vectors["X"]).all(axis=1) & given),
-                ~(found["reach"] >= 0.0).all(axis=1),
-                ~(found["pivots"] > _TOLERANCE).all(axis=1),
-                ~finite,
-            ],
-            [3, 1, 2, 3],
-            0,
+def _at(m, function, X, given, at):
+    """The array of a function at some of the states."""
+    X, given = X[:, at], [v[..., at] for v in given]
+    (found,) = function(_mode(m.p, X.shape[1]), X, *given)
+    return found
+
+
+# dynamics: 216 mul, 139 add, 4 div, 2 sqrt, 0 trig
+def _run_dynamics(m, X, V):
+    sqrt = m.sqrt
+    shared, legs = m.constants("dynamics")
+    Z_p_x, Z_p_y, m_star = shared
+    X_0 = X[0]
+    X_1 = X[1]
+    V_0 = V[0]
+    V_1 = V[1]
+    # X: named entries
+    t_x = X_0
+    t_y = X_1
+    # V: named entries
+    t_dot_x = V_0
+    t_dot_y = V_1
+    ok = True
+    out_M = m.zeros(4)
+    out_Z = m.zeros(2)
+    out_H = m.zeros(6)
+    sums = [0.0] * 5
+    for leg, k in legs[0]:
+        (
+        J_1_rrr_zz, J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr,
+            d_Gamma_1_rrr_t, d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, g_r0_x, g_r0_y,
+            h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
+            inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
+            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+            rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        ) = k
+        # (rrr-K1) from the base point to the connection point
+        S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x
+        S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y
+        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
+        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
+        # (rrr-K3) component along the reference direction
+        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
+        # (rrr-K6) factor of the cosine in the equation of joint 1
+        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
+        # (rrr-K4) component across the reference direction
+        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
+        # (rrr-K7) factor of the sine in the equation of joint 1
+        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
+        # (rrr-K8) squared amplitude
+        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
+        # (rrr-K9) discriminant
+        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
+        # (rrr-K10) root, with the sign of the branch
+        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
+        # (rrr-K16) from the origin of joint 2 to the connection point
+        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
+        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
+        # (rrr-K19) sine of the angle of joint 2 from its reference direction
+        s_2_rrr = (
+        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
         )
-    good = (status == 0)[:, None]
-    sigma = np.linalg.svd(np.where(good[..., None], matrix[..., :columns], 0.0), compute_uv=False)
-    sigma, legs = np.where(good, sigma, np.nan), np.where(good, found["pivots"], np.nan)
-    return (
-        sigma.reshape(*lead, sigma.shape[1]), legs.reshape(*lead, legs.shape[1]),
-        status.reshape(lead)[()],
+        # (rrr-V2) from joint 1 to the connection point, along the links
+        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
+        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
+        r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
+        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
+        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
+        inv_rho2_1_rrr = 1.0/rho2_1_rrr
+        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
+        # (rrr-K12) sine of the angle of joint 1 from its reference direction
+        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
+        # (rrr-V5) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
+        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+        axis_y_rrr_axes2_in_base_x = (
+        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
+        )
+        axis_y_rrr_axes2_in_base_y = (
+        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
+        )
+        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
+        # (rrr-V6) reciprocal vector 2
+        w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x
+        # (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        d_Gamma_1_rrr_t_2 = d_Gamma_1_rrr_t*r_1_rrr_r0_x
+        d_Gamma_1_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(Jc_1_rrr_zz - d_Gamma_1_rrr_t_2)
+        # (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        d_Gamma_2_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(J_2_rrr_zz - d_Gamma_1_rrr_t_2)
+        # (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        d_c_rrr_xy = d_phi_2_rrr_t + d_Gamma_1_rrr_y*inv_r_1_rrr_r0_y - d_Gamma_1_rrr_y*w_2_rrr_t
+        # (rrr-N36) inertia of the leg at the connection point, without the mass gathered there
+        Q_rrr_t = (
+        d_Gamma_1_rrr_x*inv_r_1_rrr_r0_y + h_2_rrr_y*(w_2_rrr_t - inv_r_1_rrr_r0_y) - d_c_rrr_yy -
+            d_Gamma_2_rrr_x*w_2_rrr_t
+        )
+        Q_rrr_t_2 = 0.5*Q_rrr_t
+        Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_rrr_xy
+        Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_rrr_xy
+        Q_rrr_t_5 = d_c_rrr_yy + 2.0*Q_rrr_t_3*axis_y_rrr_axes2_in_base_y
+        Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x + Q_rrr_t_4*axis_y_rrr_axes2_in_base_y
+        Q_rrr_t_7 = d_c_rrr_yy + 2.0*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x
+        # (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+        g_r1_x = c_1_rrr*g_r0_x + g_r0_y*s_1_rrr
+        g_r1_y = c_1_rrr*g_r0_y - g_r0_x*s_1_rrr
+        # (rrr-V7) rate of joint 1
+        qd_1_rrr = (
+        inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x - axis_y_rrr_axes2_in_base_x*t_dot_y)
+        )
+        # (rrr-V11) angular velocity of link 2
+        omega_2_rrr_z = (
+        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
+            axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
+        )
+        # (rrr-V10) centripetal tensor of link 1
+        W_1_rrr_t = qd_1_rrr*qd_1_rrr
+        # (rrr-V12) centripetal tensor of link 2
+        W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
+        # (rrr-A4) acceleration of the connection point at zero joint accelerations
+        bias_rrr_x = (
+        -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
+        )
+        # (rrr-A8) remainder without the acceleration in: acceleration of joint 1
+        qdd_1_rrr_o = bias_rrr_x*inv_r_1_rrr_r0_y
+        # (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        mu_1_rrr_o_z = J_1_rrr_zz*qdd_1_rrr_o + g_r1_x*h_1_rrr_y - g_r1_y*h_1_rrr_x
+        # (rrr-A17) remainder without the acceleration in: angular acceleration of link 2
+        alpha_2_rrr_o_z = (
+        qdd_1_rrr_o + inv_rrr_platform_joint_offset_x*(W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr -
+            qdd_1_rrr_o*r_1_rrr_r0_x)
+        )
+        # (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        mu_2_rrr_o_z = (
+        J_2_rrr_zz*alpha_2_rrr_o_z + h_2_rrr_y*(c_2_rrr*g_r1_x - g_r1_y*s_2_rrr) -
+            h_2_rrr_x*(c_2_rrr*g_r1_y + g_r1_x*s_2_rrr)
+        )
+        # (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        N_1_rrr_o_z = mu_1_rrr_o_z + mu_2_rrr_o_z
+        # (rrr-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        G_rrr_o_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_o_z
+        # (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        c_rrr_o_x = (
+        W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_o_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_o_t*r_1_rrr_r0_x
+            - N_1_rrr_o_z)
+        )
+        c_rrr_o_y = W_2_rrr_t*h_2_rrr_y - G_rrr_o_t - alpha_2_rrr_o_z*h_2_rrr_x
+        # (rrr-N37) velocity and gravity terms of the leg force
+        U_rrr_in_base_x = (
+        -axis_y_rrr_axes2_in_base_x*c_rrr_o_y - axis_y_rrr_axes2_in_base_y*c_rrr_o_x
+        )
+        U_rrr_in_base_y = (
+        axis_y_rrr_axes2_in_base_x*c_rrr_o_x - axis_y_rrr_axes2_in_base_y*c_rrr_o_y
+        )
+        # (rrr-V5) reciprocal vector 1
+        w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
+        w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
+        # (rrr-V6) reciprocal vector 2
+        w_2_rrr_in_base_x = (
+        axis_y_rrr_axes2_in_base_x*inv_rrr_platform_joint_offset_x +
+            axis_y_rrr_axes2_in_base_y*w_2_rrr_t
+        )
+        w_2_rrr_in_base_y = (
+        axis_y_rrr_axes2_in_base_y*inv_rrr_platform_joint_offset_x -
+            axis_y_rrr_axes2_in_base_x*w_2_rrr_t
+        )
+        ok = (
+        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
+            0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        )
+        sums = m.added(sums, leg, (
+        Q_rrr_t_5, Q_rrr_t_6, Q_rrr_t_7, U_rrr_in_base_x, U_rrr_in_base_y,
+        ))
+        out_H[[0][leg]] = -w_1_rrr_t
+        out_H[[3][leg]] = w_1_rrr_t_2
+        out_H[[1][leg]] = w_2_rrr_in_base_x
+        out_H[[4][leg]] = w_2_rrr_in_base_y
+    total_rrr_xx, total_rrr_xy, total_rrr_yy, total_rrr_x, total_rrr_y = sums
+    sums = [0.0] * 5
+    for leg, k in legs[1]:
+        (
+        J_1_rrr2_zz, J_2_rrr2_zz, Jc_1_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2,
+            d_Gamma_1_rrr2_t, d_Gamma_1_rrr2_y, d_c_rrr2_yy, d_phi_2_rrr2_t, g_r0_x_2, g_r0_y_2,
+            h_1_rrr2_x, h_1_rrr2_y, h_2_rrr2_x, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
+            inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t, rrr2_base_frame_xx,
+            rrr2_base_frame_xy, rrr2_base_frame_yx, rrr2_base_frame_yy, rrr2_base_point_x,
+            rrr2_base_point_y, rrr2_joint2_offset_x, rrr2_platform_joint_offset_x,
+            rrr2_platform_point_x, rrr2_platform_point_y, size_rrr2,
+        ) = k
+        # (rrr2-K1) from the base point to the connection point
+        S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x
+        S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y
+        # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y
+        Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
+        # (rrr2-K3) component along the reference direction
+        px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
+        # (rrr2-K6) factor of the cosine in the equation of joint 1
+        Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
+        # (rrr2-K4) component across the reference direction
+        py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
+        # (rrr2-K7) factor of the sine in the equation of joint 1
+        Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
+        # (rrr2-K8) squared amplitude
+        rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
+        # (rrr2-K9) discriminant
+        disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2
+        # (rrr2-K10) root, with the sign of the branch
+        root_1_rrr2 = branch_1_rrr2*sqrt(disc_1_rrr2)
+        # (rrr2-K16) from the origin of joint 2 to the connection point
+        x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x - rrr2_joint2_offset_x
+        # (rrr2-K18) cosine of the angle of joint 2 from its reference direction
+        c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x
+        # (rrr2-K19) sine of the angle of joint 2 from its reference direction
+        s_2_rrr2 = (
+        inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x
+        )
+        # (rrr2-V2) from joint 1 to the connection point, along the links
+        r_1_rrr2_t = rrr2_platform_joint_offset_x*s_2_rrr2
+        r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x
+        r_1_rrr2_r0_x = c_2_rrr2*r_1_rrr2_x + r_1_rrr2_t*s_2_rrr2
+        r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*r_1_rrr2_t
+        # (rrr2-K11) cosine of the angle of joint 1 from its reference direction
+        inv_rho2_1_rrr2 = 1.0/rho2_1_rrr2
+        c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2)
+        # (rrr2-K12) sine of the angle of joint 1 from its reference direction
+        s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2)
+        # (rrr2-V5) reciprocal vector 1
+        axis_y_rrr2_axes2_r1_x = c_1_rrr2*s_2_rrr2 - c_2_rrr2*s_1_rrr2
+        axis_y_rrr2_axes2_r1_y = c_1_rrr2*c_2_rrr2 + s_1_rrr2*s_2_rrr2
+        axis_y_rrr2_axes2_in_base_x = (
+        axis_y_rrr2_axes2_r1_x*rrr2_base_frame_xx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_xy
+        )
+        axis_y_rrr2_axes2_in_base_y = (
+        axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy
+        )
+        inv_r_1_rrr2_r0_y = 1.0/r_1_rrr2_r0_y
+        # (rrr2-V6) reciprocal vector 2
+        w_2_rrr2_t = inv_r_1_rrr2_r0_y*inv_rrr2_platform_joint_offset_x*r_1_rrr2_r0_x
+        # (rrr2-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        d_Gamma_1_rrr2_t_2 = d_Gamma_1_rrr2_t*r_1_rrr2_r0_x
+        d_Gamma_1_rrr2_x = -h_2_rrr2_y - inv_r_1_rrr2_r0_y*(Jc_1_rrr2_zz - d_Gamma_1_rrr2_t_2)
+        # (rrr2-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        d_Gamma_2_rrr2_x = -h_2_rrr2_y - inv_r_1_rrr2_r0_y*(J_2_rrr2_zz - d_Gamma_1_rrr2_t_2)
+        # (rrr2-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        d_c_rrr2_xy = (
+        d_phi_2_rrr2_t + d_Gamma_1_rrr2_y*inv_r_1_rrr2_r0_y - d_Gamma_1_rrr2_y*w_2_rrr2_t
+        )
+        # (rrr2-N36) inertia of the leg at the connection point, without the mass gathered there
+        Q_rrr2_t = (
+        d_Gamma_1_rrr2_x*inv_r_1_rrr2_r0_y + h_2_rrr2_y*(w_2_rrr2_t - inv_r_1_rrr2_r0_y) -
+            d_c_rrr2_yy - d_Gamma_2_rrr2_x*w_2_rrr2_t
+        )
+        Q_rrr2_t_2 = 0.5*Q_rrr2_t
+        Q_rrr2_t_3 = (
+        Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_y + axis_y_rrr2_axes2_in_base_x*d_c_rrr2_xy
+        )
+        Q_rrr2_t_4 = (
+        Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_x - axis_y_rrr2_axes2_in_base_y*d_c_rrr2_xy
+        )
+        Q_rrr2_t_5 = d_c_rrr2_yy + 2.0*Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_y
+        Q_rrr2_t_6 = (
+        Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_x + Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_y
+        )
+        Q_rrr2_t_7 = d_c_rrr2_yy + 2.0*Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_x
+        # (rrr2-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+        g_r1_x_2 = c_1_rrr2*g_r0_x_2 + g_r0_y_2*s_1_rrr2
+        g_r1_y_2 = c_1_rrr2*g_r0_y_2 - g_r0_x_2*s_1_rrr2
+        # (rrr2-V7) rate of joint 1
+        qd_1_rrr2 = (
+        inv_r_1_rrr2_r0_y*(axis_y_rrr2_axes2_in_base_y*t_dot_x -
+            axis_y_rrr2_axes2_in_base_x*t_dot_y)
+        )
+        # (rrr2-V11) angular velocity of link 2
+        omega_2_rrr2_z = (
+        inv_rrr2_platform_joint_offset_x*(axis_y_rrr2_axes2_in_base_x*t_dot_x +
+            axis_y_rrr2_axes2_in_base_y*t_dot_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2
+        )
+        # (rrr2-V10) centripetal tensor of link 1
+        W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2
+        # (rrr2-V12) centripetal tensor of link 2
+        W_2_rrr2_t = omega_2_rrr2_z*omega_2_rrr2_z
+        # (rrr2-A4) acceleration of the connection point at zero joint accelerations
+        bias_rrr2_x = (
+        -W_2_rrr2_t*rrr2_platform_joint_offset_x - W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x
+        )
+        # (rrr2-A8) remainder without the acceleration in: acceleration of joint 1
+        qdd_1_rrr2_o = bias_rrr2_x*inv_r_1_rrr2_r0_y
+        # (rrr2-N24) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        mu_1_rrr2_o_z = J_1_rrr2_zz*qdd_1_rrr2_o + g_r1_x_2*h_1_rrr2_y - g_r1_y_2*h_1_rrr2_x
+        # (rrr2-A17) remainder without the acceleration in: angular acceleration of link 2
+        alpha_2_rrr2_o_z = (
+        qdd_1_rrr2_o + inv_rrr2_platform_joint_offset_x*(W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2
+            - qdd_1_rrr2_o*r_1_rrr2_r0_x)
+        )
+        # (rrr2-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        mu_2_rrr2_o_z = (
+        J_2_rrr2_zz*alpha_2_rrr2_o_z + h_2_rrr2_y*(c_2_rrr2*g_r1_x_2 - g_r1_y_2*s_2_rrr2) -
+            h_2_rrr2_x*(c_2_rrr2*g_r1_y_2 + g_r1_x_2*s_2_rrr2)
+        )
+        # (rrr2-N26) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        N_1_rrr2_o_z = mu_1_rrr2_o_z + mu_2_rrr2_o_z
+        # (rrr2-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        G_rrr2_o_t = inv_rrr2_platform_joint_offset_x*mu_2_rrr2_o_z
+        # (rrr2-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        c_rrr2_o_x = (
+        W_2_rrr2_t*h_2_rrr2_x + alpha_2_rrr2_o_z*h_2_rrr2_y -
+            inv_r_1_rrr2_r0_y*(G_rrr2_o_t*r_1_rrr2_r0_x - N_1_rrr2_o_z)
+        )
+        c_rrr2_o_y = W_2_rrr2_t*h_2_rrr2_y - G_rrr2_o_t - alpha_2_rrr2_o_z*h_2_rrr2_x
+        # (rrr2-N37) velocity and gravity terms of the leg force
+        U_rrr2_in_base_x = (
+        -axis_y_rrr2_axes2_in_base_x*c_rrr2_o_y - axis_y_rrr2_axes2_in_base_y*c_rrr2_o_x
+        )
+        U_rrr2_in_base_y = (
+        axis_y_rrr2_axes2_in_base_x*c_rrr2_o_x - axis_y_rrr2_axes2_in_base_y*c_rrr2_o_y
+        )
+        # (rrr2-V5) reciprocal vector 1
+        w_1_rrr2_t = axis_y_rrr2_axes2_in_base_y*inv_r_1_rrr2_r0_y
+        w_1_rrr2_t_2 = axis_y_rrr2_axes2_in_base_x*inv_r_1_rrr2_r0_y
+        ok = (
+        ok & m.every((abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2
+            >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
+        )
+        sums = m.added(sums, leg, (
+        Q_rrr2_t_5, Q_rrr2_t_6, Q_rrr2_t_7, U_rrr2_in_base_x, U_rrr2_in_base_y,
+        ))
+        out_H[[2][leg]] = -w_1_rrr2_t
+        out_H[[5][leg]] = w_1_rrr2_t_2
+    total_rrr2_xx, total_rrr2_xy, total_rrr2_yy, total_rrr2_x, total_rrr2_y = sums
+    # (M1) translational block of M
+    M_tt_xx = m_star - total_rrr2_xx - total_rrr_xx
+    M_tt_xy = total_rrr2_xy + total_rrr_xy
+    M_tt_yy = m_star - total_rrr2_yy - total_rrr_yy
+    # (M3) translational part of Z
+    Z_t_x = total_rrr2_x + total_rrr_x - Z_p_x
+    Z_t_y = total_rrr2_y + total_rrr_y - Z_p_y
+    out_M[0] = M_tt_xx
+    out_M[1] = M_tt_xy
+    out_M[2] = M_tt_xy
+    out_M[3] = M_tt_yy
+    out_Z[0] = Z_t_x
+    out_Z[1] = Z_t_y
+    return ok, (out_M, out_Z, out_H,)
+
+
+# M: 124 mul, 83 add, 4 div, 2 sqrt, 0 trig
+def _run_M(m, X):
+    sqrt = m.sqrt
+    shared, legs = m.constants("M")
+    m_star, = shared
+    X_0 = X[0]
+    X_1 = X[1]
+    # X: named entries
+    t_x = X_0
+    t_y = X_1
+    ok = True
+    out_M = m.zeros(4)
+    sums = [0.0] * 3
+    for leg, k in legs[0]:
+        (
+        J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, d_Gamma_1_rrr_t,
+            d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, h_2_rrr_y, inv_Kd_1_rrr_t_5,
+            inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
+            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+            rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        ) = k
+        # (rrr-K1) from the base point to the connection point
+        S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x
+        S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y
+        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
+        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
+        # (rrr-K3) component along the reference direction
+        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
+        # (rrr-K6) factor of the cosine in the equation of joint 1
+        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
+        # (rrr-K4) component across the reference direction
+        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
+        # (rrr-K7) factor of the sine in the equation of joint 1
+        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
+        # (rrr-K8) squared amplitude
+        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
+        # (rrr-K9) discriminant
+        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
+        # (rrr-K10) root, with the sign of the branch
+        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
+        # (rrr-K16) from the origin of joint 2 to the connection point
+        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
+        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
+        # (rrr-K19) sine of the angle of joint 2 from its reference direction
+        s_2_rrr = (
+        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        )
+        # (rrr-V2) from joint 1 to the connection point, along the links
+        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
+        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
+        r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
+        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
+        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
+        inv_rho2_1_rrr = 1.0/rho2_1_rrr
+        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
+        # (rrr-K12) sine of the angle of joint 1 from its reference direction
+        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
+        # (rrr-V5) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
+        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+        axis_y_rrr_axes2_in_base_x = (
+        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
+        )
+        axis_y_rrr_axes2_in_base_y = (
+        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
+        )
+        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
+        # (rrr-V6) reciprocal vector 2
+        w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x
+        # (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        d_Gamma_1_rrr_t_2 = d_Gamma_1_rrr_t*r_1_rrr_r0_x
+        d_Gamma_1_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(Jc_1_rrr_zz - d_Gamma_1_rrr_t_2)
+        # (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        d_Gamma_2_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(J_2_rrr_zz - d_Gamma_1_rrr_t_2)
+        # (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        d_c_rrr_xy = d_phi_2_rrr_t + d_Gamma_1_rrr_y*inv_r_1_rrr_r0_y - d_Gamma_1_rrr_y*w_2_rrr_t
+        # (rrr-N36) inertia of the leg at the connection point, without the mass gathered there
+        Q_rrr_t = (
+        d_Gamma_1_rrr_x*inv_r_1_rrr_r0_y + h_2_rrr_y*(w_2_rrr_t - inv_r_1_rrr_r0_y) - d_c_rrr_yy -
+            d_Gamma_2_rrr_x*w_2_rrr_t
+        )
+        Q_rrr_t_2 = 0.5*Q_rrr_t
+        Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_rrr_xy
+        Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_rrr_xy
+        Q_rrr_t_5 = d_c_rrr_yy + 2.0*Q_rrr_t_3*axis_y_rrr_axes2_in_base_y
+        Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x + Q_rrr_t_4*axis_y_rrr_axes2_in_base_y
+        Q_rrr_t_7 = d_c_rrr_yy + 2.0*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x
+        ok = (
+        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
+            0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        )
+        sums = m.added(sums, leg, (
+        Q_rrr_t_5, Q_rrr_t_6, Q_rrr_t_7,
+        ))
+    total_rrr_xx, total_rrr_xy, total_rrr_yy = sums
+    sums = [0.0] * 3
+    for leg, k in legs[1]:
+        (
+        J_2_rrr2_zz, Jc_1_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, d_Gamma_1_rrr2_t,
+            d_Gamma_1_rrr2_y, d_c_rrr2_yy, d_phi_2_rrr2_t, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
+            inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t, rrr2_base_frame_xx,
+            rrr2_base_frame_xy, rrr2_base_frame_yx, rrr2_base_frame_yy, rrr2_base_point_x,
+            rrr2_base_point_y, rrr2_joint2_offset_x, rrr2_platform_joint_offset_x,
+            rrr2_platform_point_x, rrr2_platform_point_y, size_rrr2,
+        ) = k
+        # (rrr2-K1) from the base point to the connection point
+        S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x
+        S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y
+        # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y
+        Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
+        # (rrr2-K3) component along the reference direction
+        px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
+        # (rrr2-K6) factor of the cosine in the equation of joint 1
+        Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
+        # (rrr2-K4) component across the reference direction
+        py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
+        # (rrr2-K7) factor of the sine in the equation of joint 1
+        Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
+        # (rrr2-K8) squared amplitude
+        rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
+        # (rrr2-K9) discriminant
+        disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2
+        # (rrr2-K10) root, with the sign of the branch
+        root_1_rrr2 = branch_1_rrr2*sqrt(disc_1_rrr2)
+        # (rrr2-K16) from the origin of joint 2 to the connection point
+        x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x - rrr2_joint2_offset_x
+        # (rrr2-K18) cosine of the angle of joint 2 from its reference direction
+        c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x
+        # (rrr2-K19) sine of the angle of joint 2 from its reference direction
+        s_2_rrr2 = (
+        inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x
+        )
+        # (rrr2-V2) from joint 1 to the connection point, along the links
+        r_1_rrr2_t = rrr2_platform_joint_offset_x*s_2_rrr2
+        r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x
+        r_1_rrr2_r0_x = c_2_rrr2*r_1_rrr2_x + r_1_rrr2_t*s_2_rrr2
+        r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*r_1_rrr2_t
+        # (rrr2-K11) cosine of the angle of joint 1 from its reference direction
+        inv_rho2_1_rrr2 = 1.0/rho2_1_rrr2
+        c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2)
+        # (rrr2-K12) sine of the angle of joint 1 from its reference direction
+        s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2)
+        # (rrr2-V5) reciprocal vector 1
+        axis_y_rrr2_axes2_r1_x = c_1_rrr2*s_2_rrr2 - c_2_rrr2*s_1_rrr2
+        axis_y_rrr2_axes2_r1_y = c_1_rrr2*c_2_rrr2 + s_1_rrr2*s_2_rrr2
+        axis_y_rrr2_axes2_in_base_x = (
+        axis_y_rrr2_axes2_r1_x*rrr2_base_frame_xx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_xy
+        )
+        axis_y_rrr2_axes2_in_base_y = (
+        axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy
+        )
+        inv_r_1_rrr2_r0_y = 1.0/r_1_rrr2_r0_y
+        # (rrr2-V6) reciprocal vector 2
+        w_2_rrr2_t = inv_r_1_rrr2_r0_y*inv_rrr2_platform_joint_offset_x*r_1_rrr2_r0_x
+        # (rrr2-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        d_Gamma_1_rrr2_t_2 = d_Gamma_1_rrr2_t*r_1_rrr2_r0_x
+        d_Gamma_1_rrr2_x = -h_2_rrr2_y - inv_r_1_rrr2_r0_y*(Jc_1_rrr2_zz - d_Gamma_1_rrr2_t_2)
+        # (rrr2-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        d_Gamma_2_rrr2_x = -h_2_rrr2_y - inv_r_1_rrr2_r0_y*(J_2_rrr2_zz - d_Gamma_1_rrr2_t_2)
+        # (rrr2-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        d_c_rrr2_xy = (
+        d_phi_2_rrr2_t + d_Gamma_1_rrr2_y*inv_r_1_rrr2_r0_y - d_Gamma_1_rrr2_y*w_2_rrr2_t
+        )
+        # (rrr2-N36) inertia of the leg at the connection point, without the mass gathered there
+        Q_rrr2_t = (
+        d_Gamma_1_rrr2_x*inv_r_1_rrr2_r0_y + h_2_rrr2_y*(w_2_rrr2_t - inv_r_1_rrr2_r0_y) -
+            d_c_rrr2_yy - d_Gamma_2_rrr2_x*w_2_rrr2_t
+        )
+        Q_rrr2_t_2 = 0.5*Q_rrr2_t
+        Q_rrr2_t_3 = (
+        Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_y + axis_y_rrr2_axes2_in_base_x*d_c_rrr2_xy
+        )
+        Q_rrr2_t_4 = (
+        Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_x - axis_y_rrr2_axes2_in_base_y*d_c_rrr2_xy
+        )
+        Q_rrr2_t_5 = d_c_rrr2_yy + 2.0*Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_y
+        Q_rrr2_t_6 = (
+        Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_x + Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_y
+        )
+        Q_rrr2_t_7 = d_c_rrr2_yy + 2.0*Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_x
+        ok = (
+        ok & m.every((abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2
+            >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
+        )
+        sums = m.added(sums, leg, (
+        Q_rrr2_t_5, Q_rrr2_t_6, Q_rrr2_t_7,
+        ))
+    total_rrr2_xx, total_rrr2_xy, total_rrr2_yy = sums
+    # (M1) translational block of M
+    M_tt_xx = m_star - total_rrr2_xx - total_rrr_xx
+    M_tt_xy = total_rrr2_xy + total_rrr_xy
+    M_tt_yy = m_star - total_rrr2_yy - total_rrr_yy
+    out_M[0] = M_tt_xx
+    out_M[1] = M_tt_xy
+    out_M[2] = M_tt_xy
+    out_M[3] = M_tt_yy
+    return ok, (out_M,)
+
+
+# Z: 166 mul, 96 add, 4 div, 2 sqrt, 0 trig
+def _run_Z(m, X, V):
+    sqrt = m.sqrt
+    shared, legs = m.constants("Z")
+    Z_p_x, Z_p_y = shared
+    X_0 = X[0]
+    X_1 = X[1]
+    V_0 = V[0]
+    V_1 = V[1]
+    # X: named entries
+    t_x = X_0
+    t_y = X_1
+    # V: named entries
+    t_dot_x = V_0
+    t_dot_y = V_1
+    ok = True
+    out_Z = m.zeros(2)
+    sums = [0.0] * 2
+    for leg, k in legs[0]:
+        (
+        J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x, g_r0_y,
+            h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
+            inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
+            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+            rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        ) = k
+        # (rrr-K1) from the base point to the connection point
+        S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x
+        S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y
+        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
+        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
+        # (rrr-K3) component along the reference direction
+        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
+        # (rrr-K6) factor of the cosine in the equation of joint 1
+        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
+        # (rrr-K4) component across the reference direction
+        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
+        # (rrr-K7) factor of the sine in the equation of joint 1
+        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
+        # (rrr-K8) squared amplitude
+        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
+        # (rrr-K9) discriminant
+        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
+        # (rrr-K10) root, with the sign of the branch
+        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
+        # (rrr-K16) from the origin of joint 2 to the connection point
+        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
+        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
+        # (rrr-K19) sine of the angle of joint 2 from its reference direction
+        s_2_rrr = (
+        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        )
+        # (rrr-V2) from joint 1 to the connection point, along the links
+        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
+        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
+        r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
+        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
+        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
+        inv_rho2_1_rrr = 1.0/rho2_1_rrr
+        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
+        # (rrr-K12) sine of the angle of joint 1 from its reference direction
+        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
+        # (rrr-V5) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
+        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+        axis_y_rrr_axes2_in_base_x = (
+        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
+        )
+        axis_y_rrr_axes2_in_base_y = (
+        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
+        )
+        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
+        # (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+        g_r1_x = c_1_rrr*g_r0_x + g_r0_y*s_1_rrr
+        g_r1_y = c_1_rrr*g_r0_y - g_r0_x*s_1_rrr
+        # (rrr-V7) rate of joint 1
+        qd_1_rrr = (
+        inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x - axis_y_rrr_axes2_in_base_x*t_dot_y)
+        )
+        # (rrr-V11) angular velocity of link 2
+        omega_2_rrr_z = (
+        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
+            axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
+        )
+        # (rrr-V10) centripetal tensor of link 1
+        W_1_rrr_t = qd_1_rrr*qd_1_rrr
+        # (rrr-V12) centripetal tensor of link 2
+        W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
+        # (rrr-A4) acceleration of the connection point at zero joint accelerations
+        bias_rrr_x = (
+        -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
+        )
+        # (rrr-A8) remainder without the acceleration in: acceleration of joint 1
+        qdd_1_rrr_o = bias_rrr_x*inv_r_1_rrr_r0_y
+        # (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        mu_1_rrr_o_z = J_1_rrr_zz*qdd_1_rrr_o + g_r1_x*h_1_rrr_y - g_r1_y*h_1_rrr_x
+        # (rrr-A17) remainder without the acceleration in: angular acceleration of link 2
+        alpha_2_rrr_o_z = (
+        qdd_1_rrr_o + inv_rrr_platform_joint_offset_x*(W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr -
+            qdd_1_rrr_o*r_1_rrr_r0_x)
+        )
+        # (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        mu_2_rrr_o_z = (
+        J_2_rrr_zz*alpha_2_rrr_o_z + h_2_rrr_y*(c_2_rrr*g_r1_x - g_r1_y*s_2_rrr) -
+            h_2_rrr_x*(c_2_rrr*g_r1_y + g_r1_x*s_2_rrr)
+        )
+        # (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        N_1_rrr_o_z = mu_1_rrr_o_z + mu_2_rrr_o_z
+        # (rrr-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        G_rrr_o_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_o_z
+        # (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        c_rrr_o_x = (
+        W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_o_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_o_t*r_1_rrr_r0_x
+            - N_1_rrr_o_z)
+        )
+        c_rrr_o_y = W_2_rrr_t*h_2_rrr_y - G_rrr_o_t - alpha_2_rrr_o_z*h_2_rrr_x
+        # (rrr-N37) velocity and gravity terms of the leg force
+        U_rrr_in_base_x = (
+        -axis_y_rrr_axes2_in_base_x*c_rrr_o_y - axis_y_rrr_axes2_in_base_y*c_rrr_o_x
+        )
+        U_rrr_in_base_y = (
+        axis_y_rrr_axes2_in_base_x*c_rrr_o_x - axis_y_rrr_axes2_in_base_y*c_rrr_o_y
+        )
+        ok = (
+        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
+            0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        )
+        sums = m.added(sums, leg, (
+        U_rrr_in_base_x, U_rrr_in_base_y,
+        ))
+    total_rrr_x, total_rrr_y = sums
+    sums = [0.0] * 2
+    for leg, k in legs[1]:
+        (
+        J_1_rrr2_zz, J_2_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, g_r0_x_2, g_r0_y_2,
+            h_1_rrr2_x, h_1_rrr2_y, h_2_rrr2_x, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
+            inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t, rrr2_base_frame_xx,
+            rrr2_base_frame_xy, rrr2_base_frame_yx, rrr2_base_frame_yy, rrr2_base_point_x,
+            rrr2_base_point_y, rrr2_joint2_offset_x, rrr2_platform_joint_offset_x,
+            rrr2_platform_point_x, rrr2_platform_point_y, size_rrr2,
+        ) = k
+        # (rrr2-K1) from the base point to the connection point
+        S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x
+        S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y
+        # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y
+        Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
+        # (rrr2-K3) component along the reference direction
+        px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
+        # (rrr2-K6) factor of the cosine in the equation of joint 1
+        Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
+        # (rrr2-K4) component across the reference direction
+        py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
+        # (rrr2-K7) factor of the sine in the equation of joint 1
+        Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
+        # (rrr2-K8) squared amplitude
+        rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
+        # (rrr2-K9) discriminant
+        disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2
+        # (rrr2-K10) root, with the sign of the branch
+        root_1_rrr2 = branch_1_rrr2*sqrt(disc_1_rrr2)
+        # (rrr2-K16) from the origin of joint 2 to the connection point
+        x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x - rrr2_joint2_offset_x
+        # (rrr2-K18) cosine of the angle of joint 2 from its reference direction
+        c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x
+        # (rrr2-K19) sine of the angle of joint 2 from its reference direction
+        s_2_rrr2 = (
+        inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x
+        )
+        # (rrr2-V2) from joint 1 to the connection point, along the links
+        r_1_rrr2_t = rrr2_platform_joint_offset_x*s_2_rrr2
+        r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x
+        r_1_rrr2_r0_x = c_2_rrr2*r_1_rrr2_x + r_1_rrr2_t*s_2_rrr2
+        r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*r_1_rrr2_t
+        # (rrr2-K11) cosine of the angle of joint 1 from its reference direction
+        inv_rho2_1_rrr2 = 1.0/rho2_1_rrr2
+        c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2)
+        # (rrr2-K12) sine of the angle of joint 1 from its reference direction
+        s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2)
+        # (rrr2-V5) reciprocal vector 1
+        axis_y_rrr2_axes2_r1_x = c_1_rrr2*s_2_rrr2 - c_2_rrr2*s_1_rrr2
+        axis_y_rrr2_axes2_r1_y = c_1_rrr2*c_2_rrr2 + s_1_rrr2*s_2_rrr2
+        axis_y_rrr2_axes2_in_base_x = (
+        axis_y_rrr2_axes2_r1_x*rrr2_base_frame_xx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_xy
+        )
+        axis_y_rrr2_axes2_in_base_y = (
+        axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy
+        )
+        inv_r_1_rrr2_r0_y = 1.0/r_1_rrr2_r0_y
+        # (rrr2-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+        g_r1_x_2 = c_1_rrr2*g_r0_x_2 + g_r0_y_2*s_1_rrr2
+        g_r1_y_2 = c_1_rrr2*g_r0_y_2 - g_r0_x_2*s_1_rrr2
+        # (rrr2-V7) rate of joint 1
+        qd_1_rrr2 = (
+        inv_r_1_rrr2_r0_y*(axis_y_rrr2_axes2_in_base_y*t_dot_x -
+            axis_y_rrr2_axes2_in_base_x*t_dot_y)
+        )
+        # (rrr2-V11) angular velocity of link 2
+        omega_2_rrr2_z = (
+        inv_rrr2_platform_joint_offset_x*(axis_y_rrr2_axes2_in_base_x*t_dot_x +
+            axis_y_rrr2_axes2_in_base_y*t_dot_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2
+        )
+        # (rrr2-V10) centripetal tensor of link 1
+        W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2
+        # (rrr2-V12) centripetal tensor of link 2
+        W_2_rrr2_t = omega_2_rrr2_z*omega_2_rrr2_z
+        # (rrr2-A4) acceleration of the connection point at zero joint accelerations
+        bias_rrr2_x = (
+        -W_2_rrr2_t*rrr2_platform_joint_offset_x - W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x
+        )
+        # (rrr2-A8) remainder without the acceleration in: acceleration of joint 1
+        qdd_1_rrr2_o = bias_rrr2_x*inv_r_1_rrr2_r0_y
+        # (rrr2-N24) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        mu_1_rrr2_o_z = J_1_rrr2_zz*qdd_1_rrr2_o + g_r1_x_2*h_1_rrr2_y - g_r1_y_2*h_1_rrr2_x
+        # (rrr2-A17) remainder without the acceleration in: angular acceleration of link 2
+        alpha_2_rrr2_o_z = (
+        qdd_1_rrr2_o + inv_rrr2_platform_joint_offset_x*(W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2
+            - qdd_1_rrr2_o*r_1_rrr2_r0_x)
+        )
+        # (rrr2-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        mu_2_rrr2_o_z = (
+        J_2_rrr2_zz*alpha_2_rrr2_o_z + h_2_rrr2_y*(c_2_rrr2*g_r1_x_2 - g_r1_y_2*s_2_rrr2) -
+            h_2_rrr2_x*(c_2_rrr2*g_r1_y_2 + g_r1_x_2*s_2_rrr2)
+        )
+        # (rrr2-N26) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        N_1_rrr2_o_z = mu_1_rrr2_o_z + mu_2_rrr2_o_z
+        # (rrr2-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        G_rrr2_o_t = inv_rrr2_platform_joint_offset_x*mu_2_rrr2_o_z
+        # (rrr2-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        c_rrr2_o_x = (
+        W_2_rrr2_t*h_2_rrr2_x + alpha_2_rrr2_o_z*h_2_rrr2_y -
+            inv_r_1_rrr2_r0_y*(G_rrr2_o_t*r_1_rrr2_r0_x - N_1_rrr2_o_z)
+        )
+        c_rrr2_o_y = W_2_rrr2_t*h_2_rrr2_y - G_rrr2_o_t - alpha_2_rrr2_o_z*h_2_rrr2_x
+        # (rrr2-N37) velocity and gravity terms of the leg force
+        U_rrr2_in_base_x = (
+        -axis_y_rrr2_axes2_in_base_x*c_rrr2_o_y - axis_y_rrr2_axes2_in_base_y*c_rrr2_o_x
+        )
+        U_rrr2_in_base_y = (
+        axis_y_rrr2_axes2_in_base_x*c_rrr2_o_x - axis_y_rrr2_axes2_in_base_y*c_rrr2_o_y
+        )
+        ok = (
+        ok & m.every((abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2
+            >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
+        )
+        sums = m.added(sums, leg, (
+        U_rrr2_in_base_x, U_rrr2_in_base_y,
+        ))
+    total_rrr2_x, total_rrr2_y = sums
+    # (M3) translational part of Z
+    Z_t_x = total_rrr2_x + total_rrr_x - Z_p_x
+    Z_t_y = total_rrr2_y + total_rrr_y - Z_p_y
+    out_Z[0] = Z_t_x
+    out_Z[1] = Z_t_y
+    return ok, (out_Z,)
+
+
+# H: 90 mul, 43 add, 4 div, 2 sqrt, 0 trig
+def _run_H(m, X):
+    sqrt = m.sqrt
+    shared, legs = m.constants("H")
+    X_0 = X[0]
+    X_1 = X[1]
+    # X: named entries
+    t_x = X_0
+    t_y = X_1
+    ok = True
+    out_H = m.zeros(6)
+    for leg, k in legs[0]:
+        (
+        Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
+            inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
+            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+            rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        ) = k
+        # (rrr-K1) from the base point to the connection point
+        S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x
+        S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y
+        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
+        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
+        # (rrr-K3) component along the reference direction
+        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
+        # (rrr-K6) factor of the cosine in the equation of joint 1
+        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
+        # (rrr-K4) component across the reference direction
+        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
+        # (rrr-K7) factor of the sine in the equation of joint 1
+        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
+        # (rrr-K8) squared amplitude
+        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
+        # (rrr-K9) discriminant
+        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
+        # (rrr-K10) root, with the sign of the branch
+        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
+        # (rrr-K16) from the origin of joint 2 to the connection point
+        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
+        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
+        # (rrr-K19) sine of the angle of joint 2 from its reference direction
+        s_2_rrr = (
+        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        )
+        # (rrr-V2) from joint 1 to the connection point, along the links
+        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
+        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
+        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
+        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
+        inv_rho2_1_rrr = 1.0/rho2_1_rrr
+        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
+        # (rrr-K12) sine of the angle of joint 1 from its reference direction
+        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
+        # (rrr-V5) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
+        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+        axis_y_rrr_axes2_in_base_x = (
+        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
+        )
+        axis_y_rrr_axes2_in_base_y = (
+        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
+        )
+        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
+        # (rrr-V6) reciprocal vector 2
+        w_2_rrr_t = (
+        inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*(c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr)
+        )
+        # (rrr-V5) reciprocal vector 1
+        w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
+        w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
+        # (rrr-V6) reciprocal vector 2
+        w_2_rrr_in_base_x = (
+        axis_y_rrr_axes2_in_base_x*inv_rrr_platform_joint_offset_x +
+            axis_y_rrr_axes2_in_base_y*w_2_rrr_t
+        )
+        w_2_rrr_in_base_y = (
+        axis_y_rrr_axes2_in_base_y*inv_rrr_platform_joint_offset_x -
+            axis_y_rrr_axes2_in_base_x*w_2_rrr_t
+        )
+        ok = (
+        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
+            0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        )
+        out_H[[0][leg]] = -w_1_rrr_t
+        out_H[[3][leg]] = w_1_rrr_t_2
+        out_H[[1][leg]] = w_2_rrr_in_base_x
+        out_H[[4][leg]] = w_2_rrr_in_base_y
+    for leg, k in legs[1]:
+        (
+        Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5, inv_uu_2_rrr2_t,
+            rho2_1_rrr2_t, rrr2_base_frame_xx, rrr2_base_frame_xy, rrr2_base_frame_yx,
+            rrr2_base_frame_yy, rrr2_base_point_x, rrr2_base_point_y, rrr2_joint2_offset_x,
+            rrr2_platform_joint_offset_x, rrr2_platform_point_x, rrr2_platform_point_y, size_rrr2,
+        ) = k
+        # (rrr2-K1) from the base point to the connection point
+        S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x
+        S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y
+        # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y
+        Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
+        # (rrr2-K3) component along the reference direction
+        px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
+        # (rrr2-K6) factor of the cosine in the equation of joint 1
+        Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
+        # (rrr2-K4) component across the reference direction
+        py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
+        # (rrr2-K7) factor of the sine in the equation of joint 1
+        Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
+        # (rrr2-K8) squared amplitude
+        rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
+        # (rrr2-K9) discriminant
+        disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2
+        # (rrr2-K10) root, with the sign of the branch
+        root_1_rrr2 = branch_1_rrr2*sqrt(disc_1_rrr2)
+        # (rrr2-K16) from the origin of joint 2 to the connection point
+        x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x - rrr2_joint2_offset_x
+        # (rrr2-K18) cosine of the angle of joint 2 from its reference direction
+        c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x
+        # (rrr2-K19) sine of the angle of joint 2 from its reference direction
+        s_2_rrr2 = (
+        inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x
+        )
+        # (rrr2-V2) from joint 1 to the connection point, along the links
+        r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x
+        r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*rrr2_platform_joint_offset_x*s_2_rrr2
+        # (rrr2-K11) cosine of the angle of joint 1 from its reference direction
+        inv_rho2_1_rrr2 = 1.0/rho2_1_rrr2
+        c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2)
+        # (rrr2-K12) sine of the angle of joint 1 from its reference direction
+        s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2)
+        # (rrr2-V5) reciprocal vector 1
+        axis_y_rrr2_axes2_r1_x = c_1_rrr2*s_2_rrr2 - c_2_rrr2*s_1_rrr2
+        axis_y_rrr2_axes2_r1_y = c_1_rrr2*c_2_rrr2 + s_1_rrr2*s_2_rrr2
+        inv_r_1_rrr2_r0_y = 1.0/r_1_rrr2_r0_y
+        w_1_rrr2_t = (
+        inv_r_1_rrr2_r0_y*(axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx +
+            axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy)
+        )
+        w_1_rrr2_t_2 = (
+        inv_r_1_rrr2_r0_y*(axis_y_rrr2_axes2_r1_x*rrr2_base_frame_xx +
+            axis_y_rrr2_axes2_r1_y*rrr2_base_frame_xy)
+        )
+        ok = (
+        ok & m.every((abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2
+            >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
+        )
+        out_H[[2][leg]] = -w_1_rrr2_t
+        out_H[[5][leg]] = w_1_rrr2_t_2
+    return ok, (out_H,)
+
+
+# required: 186 mul, 112 add, 4 div, 2 sqrt, 0 trig
+def _run_required(m, X, V, A):
+    sqrt = m.sqrt
+    shared, legs = m.constants("required")
+    gravity_x, gravity_y, m_star = shared
+    X_0 = X[0]
+    X_1 = X[1]
+    V_0 = V[0]
+    V_1 = V[1]
+    A_0 = A[0]
+    A_1 = A[1]
+    # X: named entries
+    t_x = X_0
+    t_y = X_1
+    # V: named entries
+    t_dot_x = V_0
+    t_dot_y = V_1
+    # A: named entries
+    t_ddot_x = A_0
+    t_ddot_y = A_1
+    ok = True
+    out_required = m.zeros(2)
+    out_H = m.zeros(6)
+    # (E1) acceleration of the platform origin, less gravity
+    a_t_x = t_ddot_x - gravity_x
+    a_t_y = t_ddot_y - gravity_y
+    # (E2) inertia force of the platform less its weight
+    f_p_x = a_t_x*m_star
+    f_p_y = a_t_y*m_star
+    sums = [0.0] * 2
+    for leg, k in legs[0]:
+        (
+        J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x, g_r0_y,
+            h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
+            inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
+            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+            rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        ) = k
+        # (rrr-K1) from the base point to the connection point
+        S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x
+        S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y
+        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
+        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
+        # (rrr-K3) component along the reference direction
+        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
+        # (rrr-K6) factor of the cosine in the equation of joint 1
+        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
+        # (rrr-K4) component across the reference direction
+        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
+        # (rrr-K7) factor of the sine in the equation of joint 1
+        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
+        # (rrr-K8) squared amplitude
+        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
+        # (rrr-K9) discriminant
+        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
+        # (rrr-K10) root, with the sign of the branch
+        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
+        # (rrr-K16) from the origin of joint 2 to the connection point
+        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
+        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
+        # (rrr-K19) sine of the angle of joint 2 from its reference direction
+        s_2_rrr = (
+        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        )
+        # (rrr-V2) from joint 1 to the connection point, along the links
+        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
+        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
+        r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
+        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
+        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
+        inv_rho2_1_rrr = 1.0/rho2_1_rrr
+        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
+        # (rrr-K12) sine of the angle of joint 1 from its reference direction
+        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
+        # (rrr-V5) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
+        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+        axis_y_rrr_axes2_in_base_x = (
+        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
+        )
+        axis_y_rrr_axes2_in_base_y = (
+        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
+        )
+        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
+        # (rrr-V6) reciprocal vector 2
+        w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x
+        # (rrr-V7) rate of joint 1
+        qd_1_rrr = (
+        inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x - axis_y_rrr_axes2_in_base_x*t_dot_y)
+        )
+        # (rrr-V11) angular velocity of link 2
+        omega_2_rrr_z = (
+        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
+            axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
+        )
+        # (rrr-V10) centripetal tensor of link 1
+        W_1_rrr_t = qd_1_rrr*qd_1_rrr
+        # (rrr-V12) centripetal tensor of link 2
+        W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
+        # (rrr-A4) acceleration of the connection point at zero joint accelerations
+        bias_rrr_x = (
+        -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
+        )
+        # (rrr-V5) reciprocal vector 1
+        w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
+        w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
+        # (rrr-V6) reciprocal vector 2
+        w_2_rrr_in_base_x = (
+        axis_y_rrr_axes2_in_base_x*inv_rrr_platform_joint_offset_x +
+            axis_y_rrr_axes2_in_base_y*w_2_rrr_t
+        )
+        w_2_rrr_in_base_y = (
+        axis_y_rrr_axes2_in_base_y*inv_rrr_platform_joint_offset_x -
+            axis_y_rrr_axes2_in_base_x*w_2_rrr_t
+        )
+        # (rrr-A2) acceleration of the connection point
+        S_ddot_rrr_tip_x = (
+        axis_y_rrr_axes2_in_base_y*t_ddot_x - axis_y_rrr_axes2_in_base_x*t_ddot_y
+        )
+        S_ddot_rrr_tip_y = (
+        axis_y_rrr_axes2_in_base_x*t_ddot_x + axis_y_rrr_axes2_in_base_y*t_ddot_y
+        )
+        # (rrr-A5) acceleration of the connection point left to the joint accelerations
+        rel_rrr_x = S_ddot_rrr_tip_x - bias_rrr_x
+        rel_rrr_y = S_ddot_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
+        # (rrr-A7) acceleration of joint 1
+        qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x
+        # (rrr-N3) acceleration of the reference point of link 2, less gravity
+        acc_2_rrr_x = (
+        S_ddot_rrr_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
+            axis_y_rrr_axes2_in_base_y*gravity_x
+        )
+        acc_2_rrr_y = (
+        S_ddot_rrr_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
+            axis_y_rrr_axes2_in_base_y*gravity_y
+        )
+        # (rrr-N23) inertia moment of the links that turn with link 1, about their reference points
+        mu_1_rrr_z = (
+        h_1_rrr_y*(c_1_rrr*g_r0_x + g_r0_y*s_1_rrr) - J_1_rrr_zz*qdd_1_rrr -
+            h_1_rrr_x*(c_1_rrr*g_r0_y - g_r0_x*s_1_rrr)
+        )
+        # (rrr-A15) angular acceleration of link 2
+        alpha_2_rrr_z = (
+        inv_rrr_platform_joint_offset_x*(rel_rrr_y + qdd_1_rrr*r_1_rrr_r0_x) - qdd_1_rrr
+        )
+        # (rrr-N16) inertia moment of the links that turn with link 2, about their reference points
+        mu_2_rrr_z = J_2_rrr_zz*alpha_2_rrr_z + acc_2_rrr_y*h_2_rrr_x - acc_2_rrr_x*h_2_rrr_y
+        # (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        N_1_rrr_z = mu_1_rrr_z + mu_2_rrr_z
+        # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
+        G_rrr_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_z
+        # (rrr-N33) leg force on the platform without actuation and without the mass at the connection point
+        c_rrr_x = (
+        W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_t*r_1_rrr_r0_x -
+            N_1_rrr_z)
+        )
+        c_rrr_y = W_2_rrr_t*h_2_rrr_y - G_rrr_t - alpha_2_rrr_z*h_2_rrr_x
+        c_rrr_in_base_x = axis_y_rrr_axes2_in_base_x*c_rrr_y + axis_y_rrr_axes2_in_base_y*c_rrr_x
+        c_rrr_in_base_y = axis_y_rrr_axes2_in_base_y*c_rrr_y - axis_y_rrr_axes2_in_base_x*c_rrr_x
+        ok = (
+        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
+            0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        )
+        sums = m.added(sums, leg, (
+        c_rrr_in_base_x, c_rrr_in_base_y,
+        ))
+        out_H[[0][leg]] = -w_1_rrr_t
+        out_H[[3][leg]] = w_1_rrr_t_2
+        out_H[[1][leg]] = w_2_rrr_in_base_x
+        out_H[[4][leg]] = w_2_rrr_in_base_y
+    total_rrr_x, total_rrr_y = sums
+    sums = [0.0] * 2
+    for leg, k in legs[1]:
+        (
+        J_1_rrr2_zz, J_2_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, g_r0_x_2, g_r0_y_2,
+            h_1_rrr2_x, h_1_rrr2_y, h_2_rrr2_x, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
+            inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t, rrr2_base_frame_xx,
+            rrr2_base_frame_xy, rrr2_base_frame_yx, rrr2_base_frame_yy, rrr2_base_point_x,
+            rrr2_base_point_y, rrr2_joint2_offset_x, rrr2_platform_joint_offset_x,
+            rrr2_platform_point_x, rrr2_platform_point_y, size_rrr2,
+        ) = k
+        # (rrr2-K1) from the base point to the connection point
+        S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x
+        S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y
+        # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y
+        Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
+        # (rrr2-K3) component along the reference direction
+        px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
+        # (rrr2-K6) factor of the cosine in the equation of joint 1
+        Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
+        # (rrr2-K4) component across the reference direction
+        py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
+        # (rrr2-K7) factor of the sine in the equation of joint 1
+        Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
+        # (rrr2-K8) squared amplitude
+        rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
+        # (rrr2-K9) discriminant
+        disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2
+        # (rrr2-K10) root, with the sign of the branch
+        root_1_rrr2 = branch_1_rrr2*sqrt(disc_1_rrr2)
+        # (rrr2-K16) from the origin of joint 2 to the connection point
+        x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x - rrr2_joint2_offset_x
+        # (rrr2-K18) cosine of the angle of joint 2 from its reference direction
+        c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x
+        # (rrr2-K19) sine of the angle of joint 2 from its reference direction
+        s_2_rrr2 = (
+        inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x
+        )
+        # (rrr2-V2) from joint 1 to the connection point, along the links
+        r_1_rrr2_t = rrr2_platform_joint_offset_x*s_2_rrr2
+        r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x
+        r_1_rrr2_r0_x = c_2_rrr2*r_1_rrr2_x + r_1_rrr2_t*s_2_rrr2
+        r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*r_1_rrr2_t
+        # (rrr2-K11) cosine of the angle of joint 1 from its reference direction
+        inv_rho2_1_rrr2 = 1.0/rho2_1_rrr2
+        c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2)
+        # (rrr2-K12) sine of the angle of joint 1 from its reference direction
+        s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2)
+        # (rrr2-V5) reciprocal vector 1
+        axis_y_rrr2_axes2_r1_x = c_1_rrr2*s_2_rrr2 - c_2_rrr2*s_1_rrr2
+        axis_y_rrr2_axes2_r1_y = c_1_rrr2*c_2_rrr2 + s_1_rrr2*s_2_rrr2
+        axis_y_rrr2_axes2_in_base_x = (
+        axis_y_rrr2_axes2_r1_x*rrr2_base_frame_xx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_xy
+        )
+        axis_y_rrr2_axes2_in_base_y = (
+        axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy
+        )
+        inv_r_1_rrr2_r0_y = 1.0/r_1_rrr2_r0_y
+        # (rrr2-V7) rate of joint 1
+        qd_1_rrr2 = (
+        inv_r_1_rrr2_r0_y*(axis_y_rrr2_axes2_in_base_y*t_dot_x -
+            axis_y_rrr2_axes2_in_base_x*t_dot_y)
+        )
+        # (rrr2-V11) angular velocity of link 2
+        omega_2_rrr2_z = (
+        inv_rrr2_platform_joint_offset_x*(axis_y_rrr2_axes2_in_base_x*t_dot_x +
+            axis_y_rrr2_axes2_in_base_y*t_dot_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2
+        )
+        # (rrr2-V10) centripetal tensor of link 1
+        W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2
+        # (rrr2-V12) centripetal tensor of link 2
+        W_2_rrr2_t = omega_2_rrr2_z*omega_2_rrr2_z
+        # (rrr2-A4) acceleration of the connection point at zero joint accelerations
+        bias_rrr2_x = (
+        -W_2_rrr2_t*rrr2_platform_joint_offset_x - W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x
+        )
+        # (rrr2-V5) reciprocal vector 1
+        w_1_rrr2_t = axis_y_rrr2_axes2_in_base_y*inv_r_1_rrr2_r0_y
+        w_1_rrr2_t_2 = axis_y_rrr2_axes2_in_base_x*inv_r_1_rrr2_r0_y
+        # (rrr2-A2) acceleration of the connection point
+        S_ddot_rrr2_tip_x = (
+        axis_y_rrr2_axes2_in_base_y*t_ddot_x - axis_y_rrr2_axes2_in_base_x*t_ddot_y
+        )
+        S_ddot_rrr2_tip_y = (
+        axis_y_rrr2_axes2_in_base_x*t_ddot_x + axis_y_rrr2_axes2_in_base_y*t_ddot_y
+        )
+        # (rrr2-A5) acceleration of the connection point left to the joint accelerations
+        rel_rrr2_x = S_ddot_rrr2_tip_x - bias_rrr2_x
+        rel_rrr2_y = S_ddot_rrr2_tip_y + W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2
+        # (rrr2-A7) acceleration of joint 1
+        qdd_1_rrr2 = inv_r_1_rrr2_r0_y*rel_rrr2_x
+        # (rrr2-N3) acceleration of the reference point of link 2, less gravity
+        acc_2_rrr2_x = (
+        S_ddot_rrr2_tip_x + axis_y_rrr2_axes2_in_base_x*gravity_y -
+            axis_y_rrr2_axes2_in_base_y*gravity_x
+        )
+        acc_2_rrr2_y = (
+        S_ddot_rrr2_tip_y - axis_y_rrr2_axes2_in_base_x*gravity_x -
+            axis_y_rrr2_axes2_in_base_y*gravity_y
+        )
+        # (rrr2-N23) inertia moment of the links that turn with link 1, about their reference points
+        mu_1_rrr2_z = (
+        h_1_rrr2_y*(c_1_rrr2*g_r0_x_2 + g_r0_y_2*s_1_rrr2) - J_1_rrr2_zz*qdd_1_rrr2 -
+            h_1_rrr2_x*(c_1_rrr2*g_r0_y_2 - g_r0_x_2*s_1_rrr2)
+        )
+        # (rrr2-A15) angular acceleration of link 2
+        alpha_2_rrr2_z = (
+        inv_rrr2_platform_joint_offset_x*(rel_rrr2_y + qdd_1_rrr2*r_1_rrr2_r0_x) - qdd_1_rrr2
+        )
+        # (rrr2-N16) inertia moment of the links that turn with link 2, about their reference points
+        mu_2_rrr2_z = (
+        J_2_rrr2_zz*alpha_2_rrr2_z + acc_2_rrr2_y*h_2_rrr2_x - acc_2_rrr2_x*h_2_rrr2_y
+        )
+        # (rrr2-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        N_1_rrr2_z = mu_1_rrr2_z + mu_2_rrr2_z
+        # (rrr2-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
+        G_rrr2_t = inv_rrr2_platform_joint_offset_x*mu_2_rrr2_z
+        # (rrr2-N33) leg force on the platform without actuation and without the mass at the connection point
+        c_rrr2_x = (
+        W_2_rrr2_t*h_2_rrr2_x + alpha_2_rrr2_z*h_2_rrr2_y -
+            inv_r_1_rrr2_r0_y*(G_rrr2_t*r_1_rrr2_r0_x - N_1_rrr2_z)
+        )
+        c_rrr2_y = W_2_rrr2_t*h_2_rrr2_y - G_rrr2_t - alpha_2_rrr2_z*h_2_rrr2_x
+        c_rrr2_in_base_x = (
+        axis_y_rrr2_axes2_in_base_x*c_rrr2_y + axis_y_rrr2_axes2_in_base_y*c_rrr2_x
+        )
+        c_rrr2_in_base_y = (
+        axis_y_rrr2_axes2_in_base_y*c_rrr2_y - axis_y_rrr2_axes2_in_base_x*c_rrr2_x
+        )
+        ok = (
+        ok & m.every((abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2
+            >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
+        )
+        sums = m.added(sums, leg, (
+        c_rrr2_in_base_x, c_rrr2_in_base_y,
+        ))
+        out_H[[2][leg]] = -w_1_rrr2_t
+        out_H[[5][leg]] = w_1_rrr2_t_2
+    total_rrr2_x, total_rrr2_y = sums
+    # (E3) force that actuators and external wrench must give
+    R_t_x = f_p_x - total_rrr2_x - total_rrr_x
+    R_t_y = f_p_y - total_rrr2_y - total_rrr_y
+    out_required[0] = R_t_x
+    out_required[1] = R_t_y
+    return ok, (out_required, out_H,)
+
+
+# inverse_kinematics: 54 mul, 28 add, 2 div, 2 sqrt, 4 trig
+def _run_inverse_kinematics(m, X):
+    sqrt = m.sqrt
+    atan2 = m.atan2
+    shared, legs = m.constants("inverse_kinematics")
+    X_0 = X[0]
+    X_1 = X[1]
+    # X: named entries
+    t_x = X_0
+    t_y = X_1
+    ok = True
+    out_q = m.zeros(4)
+    for leg, k in legs[0]:
+        (
+        Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t, rho2_1_rrr_t,
+            rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
+            rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y,
+        ) = k
+        # (rrr-K1) from the base point to the connection point
+        S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x
+        S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y
+        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
+        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
+        # (rrr-K3) component along the reference direction
+        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
+        # (rrr-K6) factor of the cosine in the equation of joint 1
+        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
+        # (rrr-K4) component across the reference direction
+        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
+        # (rrr-K7) factor of the sine in the equation of joint 1
+        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
+        # (rrr-K8) squared amplitude
+        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
+        # (rrr-K9) discriminant
+        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
+        # (rrr-K10) root, with the sign of the branch
+        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
+        # (rrr-K16) from the origin of joint 2 to the connection point
+        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
+        inv_rho2_1_rrr = 1.0/rho2_1_rrr
+        # (rrr-K13) displacement of joint 1
+        q_1_rrr = (
+        atan2(inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr),
+            inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr))
+        )
+        # (rrr-K20) displacement of joint 2
+        q_2_rrr = (
+        atan2(-inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x,
+            inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x)
+        )
+        ok = (
+        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
+            0.0))
+        )
+        out_q[[0][leg]] = q_1_rrr
+        out_q[[1][leg]] = q_2_rrr
+    for leg, k in legs[1]:
+        (
+        Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5, inv_uu_2_rrr2_t,
+            rho2_1_rrr2_t, rrr2_base_frame_xx, rrr2_base_frame_xy, rrr2_base_frame_yx,
+            rrr2_base_frame_yy, rrr2_base_point_x, rrr2_base_point_y, rrr2_joint2_offset_x,
+            rrr2_platform_joint_offset_x, rrr2_platform_point_x, rrr2_platform_point_y,
+        ) = k
+        # (rrr2-K1) from the base point to the connection point
+        S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x
+        S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y
+        # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y
+        Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
+        # (rrr2-K3) component along the reference direction
+        px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
+        # (rrr2-K6) factor of the cosine in the equation of joint 1
+        Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
+        # (rrr2-K4) component across the reference direction
+        py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
+        # (rrr2-K7) factor of the sine in the equation of joint 1
+        Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
+        # (rrr2-K8) squared amplitude
+        rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
+        # (rrr2-K9) discriminant
+        disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2
+        # (rrr2-K10) root, with the sign of the branch
+        root_1_rrr2 = branch_1_rrr2*sqrt(disc_1_rrr2)
+        # (rrr2-K16) from the origin of joint 2 to the connection point
+        x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x - rrr2_joint2_offset_x
+        # (rrr2-K11) cosine of the angle of joint 1 from its reference direction
+        inv_rho2_1_rrr2 = 1.0/rho2_1_rrr2
+        # (rrr2-K13) displacement of joint 1
+        q_1_rrr2 = (
+        atan2(inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2),
+            inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2))
+        )
+        # (rrr2-K20) displacement of joint 2
+        q_2_rrr2 = (
+        atan2(-inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x,
+            inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x)
+        )
+        ok = (
+        ok & m.every((abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2
+            >= 0.0))
+        )
+        out_q[[2][leg]] = q_1_rrr2
+        out_q[[3][leg]] = q_2_rrr2
+    return ok, (out_q,)
+
+
+# joint_rates: 94 mul, 48 add, 4 div, 2 sqrt, 0 trig
+def _run_joint_rates(m, X, V):
+    sqrt = m.sqrt
+    shared, legs = m.constants("joint_rates")
+    X_0 = X[0]
+    X_1 = X[1]
+    V_0 = V[0]
+    V_1 = V[1]
+    # X: named entries
+    t_x = X_0
+    t_y = X_1
+    # V: named entries
+    t_dot_x = V_0
+    t_dot_y = V_1
+    ok = True
+    out_qd = m.zeros(4)
+    for leg, k in legs[0]:
+        (
+        Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
+            inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
+            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+            rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        ) = k
+        # (rrr-K1) from the base point to the connection point
+        S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x
+        S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y
+        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
+        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
+        # (rrr-K3) component along the reference direction
+        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
+        # (rrr-K6) factor of the cosine in the equation of joint 1
+        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
+        # (rrr-K4) component across the reference direction
+        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
+        # (rrr-K7) factor of the sine in the equation of joint 1
+        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
+        # (rrr-K8) squared amplitude
+        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
+        # (rrr-K9) discriminant
+        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
+        # (rrr-K10) root, with the sign of the branch
+        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
+        # (rrr-K16) from the origin of joint 2 to the connection point
+        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
+        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
+        # (rrr-K19) sine of the angle of joint 2 from its reference direction
+        s_2_rrr = (
+        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        )
+        # (rrr-V2) from joint 1 to the connection point, along the links
+        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
+        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
+        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
+        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
+        inv_rho2_1_rrr = 1.0/rho2_1_rrr
+        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
+        # (rrr-K12) sine of the angle of joint 1 from its reference direction
+        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
+        # (rrr-V5) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
+        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+        axis_y_rrr_axes2_in_base_x = (
+        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
+        )
+        axis_y_rrr_axes2_in_base_y = (
+        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
+        )
+        # (rrr-V7) rate of joint 1
+        qd_1_rrr = (
+        (axis_y_rrr_axes2_in_base_y*t_dot_x - axis_y_rrr_axes2_in_base_x*t_dot_y)/r_1_rrr_r0_y
+        )
+        qd_2_rrr = (
+        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
+            axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1_rrr*(c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr))
+        )
+        ok = (
+        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
+            0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        )
+        out_qd[[0][leg]] = -qd_1_rrr
+        out_qd[[1][leg]] = qd_2_rrr
+    for leg, k in legs[1]:
+        (
+        Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5,
+            inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t, rrr2_base_frame_xx,
+            rrr2_base_frame_xy, rrr2_base_frame_yx, rrr2_base_frame_yy, rrr2_base_point_x,
+            rrr2_base_point_y, rrr2_joint2_offset_x, rrr2_platform_joint_offset_x,
+            rrr2_platform_point_x, rrr2_platform_point_y, size_rrr2,
+        ) = k
+        # (rrr2-K1) from the base point to the connection point
+        S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x
+        S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y
+        # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y
+        Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
+        # (rrr2-K3) component along the reference direction
+        px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
+        # (rrr2-K6) factor of the cosine in the equation of joint 1
+        Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
+        # (rrr2-K4) component across the reference direction
+        py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
+        # (rrr2-K7) factor of the sine in the equation of joint 1
+        Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
+        # (rrr2-K8) squared amplitude
+        rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
+        # (rrr2-K9) discriminant
+        disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2
+        # (rrr2-K10) root, with the sign of the branch
+        root_1_rrr2 = branch_1_rrr2*sqrt(disc_1_rrr2)
+        # (rrr2-K16) from the origin of joint 2 to the connection point
+        x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x - rrr2_joint2_offset_x
+        # (rrr2-K18) cosine of the angle of joint 2 from its reference direction
+        c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x
+        # (rrr2-K19) sine of the angle of joint 2 from its reference direction
+        s_2_rrr2 = (
+        inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x
+        )
+        # (rrr2-V2) from joint 1 to the connection point, along the links
+        r_1_rrr2_t = rrr2_platform_joint_offset_x*s_2_rrr2
+        r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x
+        r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*r_1_rrr2_t
+        # (rrr2-K11) cosine of the angle of joint 1 from its reference direction
+        inv_rho2_1_rrr2 = 1.0/rho2_1_rrr2
+        c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2)
+        # (rrr2-K12) sine of the angle of joint 1 from its reference direction
+        s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2)
+        # (rrr2-V5) reciprocal vector 1
+        axis_y_rrr2_axes2_r1_x = c_1_rrr2*s_2_rrr2 - c_2_rrr2*s_1_rrr2
+        axis_y_rrr2_axes2_r1_y = c_1_rrr2*c_2_rrr2 + s_1_rrr2*s_2_rrr2
+        axis_y_rrr2_axes2_in_base_x = (
+        axis_y_rrr2_axes2_r1_x*rrr2_base_frame_xx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_xy
+        )
+        axis_y_rrr2_axes2_in_base_y = (
+        axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy
+        )
+        # (rrr2-V7) rate of joint 1
+        qd_1_rrr2 = (
+        (axis_y_rrr2_axes2_in_base_y*t_dot_x - axis_y_rrr2_axes2_in_base_x*t_dot_y)/r_1_rrr2_r0_y
+        )
+        qd_2_rrr2 = (
+        inv_rrr2_platform_joint_offset_x*(axis_y_rrr2_axes2_in_base_x*t_dot_x +
+            axis_y_rrr2_axes2_in_base_y*t_dot_y + qd_1_rrr2*(c_2_rrr2*r_1_rrr2_x +
+            r_1_rrr2_t*s_2_rrr2))
+        )
+        ok = (
+        ok & m.every((abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2
+            >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
+        )
+        out_qd[[2][leg]] = -qd_1_rrr2
+        out_qd[[3][leg]] = qd_2_rrr2
+    return ok, (out_qd,)
+
+
+# joint_accelerations: 124 mul, 62 add, 4 div, 2 sqrt, 0 trig
+def _run_joint_accelerations(m, X, V, A):
+    sqrt = m.sqrt
+    shared, legs = m.constants("joint_accelerations")
+    X_0 = X[0]
+    X_1 = X[1]
+    V_0 = V[0]
+    V_1 = V[1]
+    A_0 = A[0]
+    A_1 = A[1]
+    # X: named entries
+    t_x = X_0
+    t_y = X_1
+    # V: named entries
+    t_dot_x = V_0
+    t_dot_y = V_1
+    # A: named entries
+    t_ddot_x = A_0
+    t_ddot_y = A_1
+    ok = True
+    out_qdd = m.zeros(4)
+    for leg, k in legs[0]:
+        (
+        Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
+            inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
+            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+            rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        ) = k
+        # (rrr-K1) from the base point to the connection point
+        S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x
+        S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y
+        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
+        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
+        # (rrr-K3) component along the reference direction
+        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
+        # (rrr-K6) factor of the cosine in the equation of joint 1
+        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
+        # (rrr-K4) component across the reference direction
+        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
+        # (rrr-K7) factor of the sine in the equation of joint 1
+        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
+        # (rrr-K8) squared amplitude
+        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
+        # (rrr-K9) discriminant
+        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
+        # (rrr-K10) root, with the sign of the branch
+        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
+        # (rrr-K16) from the origin of joint 2 to the connection point
+        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
+        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
+        # (rrr-K19) sine of the angle of joint 2 from its reference direction
+        s_2_rrr = (
+        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        )
+        # (rrr-V2) from joint 1 to the connection point, along the links
+        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
+        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
+        r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
+        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
+        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
+        inv_rho2_1_rrr = 1.0/rho2_1_rrr
+        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
+        # (rrr-K12) sine of the angle of joint 1 from its reference direction
+        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
+        # (rrr-V5) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
+        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+        axis_y_rrr_axes2_in_base_x = (
+        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
+        )
+        axis_y_rrr_axes2_in_base_y = (
+        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
+        )
+        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
+        # (rrr-V7) rate of joint 1
+        qd_1_rrr = (
+        inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x - axis_y_rrr_axes2_in_base_x*t_dot_y)
+        )
+        # (rrr-V11) angular velocity of link 2
+        omega_2_rrr_z = (
+        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
+            axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
+        )
+        # (rrr-V10) centripetal tensor of link 1
+        W_1_rrr_t = qd_1_rrr*qd_1_rrr
+        # (rrr-A4) acceleration of the connection point at zero joint accelerations
+        bias_rrr_x = (
+        -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
+            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
+        )
+        # (rrr-A5) acceleration of the connection point left to the joint accelerations
+        rel_rrr_x = (
+        axis_y_rrr_axes2_in_base_y*t_ddot_x - bias_rrr_x - axis_y_rrr_axes2_in_base_x*t_ddot_y
+        )
+        rel_rrr_y = (
+        axis_y_rrr_axes2_in_base_x*t_ddot_x + axis_y_rrr_axes2_in_base_y*t_ddot_y +
+            W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
+        )
+        # (rrr-A7) acceleration of joint 1
+        qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x
+        qdd_2_rrr = inv_rrr_platform_joint_offset_x*(rel_rrr_y + qdd_1_rrr*r_1_rrr_r0_x)
+        ok = (
+        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
+            0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        )
+        out_qdd[[0][leg]] = -qdd_1_rrr
+        out_qdd[[1][leg]] = qdd_2_rrr
+    for leg, k in legs[1]:
+        (
+        Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5,
+            inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t, rrr2_base_frame_xx,
+            rrr2_base_frame_xy, rrr2_base_frame_yx, rrr2_base_frame_yy, rrr2_base_point_x,
+            rrr2_base_point_y, rrr2_joint2_offset_x, rrr2_platform_joint_offset_x,
+            rrr2_platform_point_x, rrr2_platform_point_y, size_rrr2,
+        ) = k
+        # (rrr2-K1) from the base point to the connection point
+        S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x
+        S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y
+        # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y
+        Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
+        # (rrr2-K3) component along the reference direction
+        px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
+        # (rrr2-K6) factor of the cosine in the equation of joint 1
+        Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
+        # (rrr2-K4) component across the reference direction
+        py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
+        # (rrr2-K7) factor of the sine in the equation of joint 1
+        Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
+        # (rrr2-K8) squared amplitude
+        rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
+        # (rrr2-K9) discriminant
+        disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2
+        # (rrr2-K10) root, with the sign of the branch
+        root_1_rrr2 = branch_1_rrr2*sqrt(disc_1_rrr2)
+        # (rrr2-K16) from the origin of joint 2 to the connection point
+        x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x - rrr2_joint2_offset_x
+        # (rrr2-K18) cosine of the angle of joint 2 from its reference direction
+        c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x
+        # (rrr2-K19) sine of the angle of joint 2 from its reference direction
+        s_2_rrr2 = (
+        inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x
+        )
+        # (rrr2-V2) from joint 1 to the connection point, along the links
+        r_1_rrr2_t = rrr2_platform_joint_offset_x*s_2_rrr2
+        r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x
+        r_1_rrr2_r0_x = c_2_rrr2*r_1_rrr2_x + r_1_rrr2_t*s_2_rrr2
+        r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*r_1_rrr2_t
+        # (rrr2-K11) cosine of the angle of joint 1 from its reference direction
+        inv_rho2_1_rrr2 = 1.0/rho2_1_rrr2
+        c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2)
+        # (rrr2-K12) sine of the angle of joint 1 from its reference direction
+        s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2)
+        # (rrr2-V5) reciprocal vector 1
+        axis_y_rrr2_axes2_r1_x = c_1_rrr2*s_2_rrr2 - c_2_rrr2*s_1_rrr2
+        axis_y_rrr2_axes2_r1_y = c_1_rrr2*c_2_rrr2 + s_1_rrr2*s_2_rrr2
+        axis_y_rrr2_axes2_in_base_x = (
+        axis_y_rrr2_axes2_r1_x*rrr2_base_frame_xx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_xy
+        )
+        axis_y_rrr2_axes2_in_base_y = (
+        axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy
+        )
+        inv_r_1_rrr2_r0_y = 1.0/r_1_rrr2_r0_y
+        # (rrr2-V7) rate of joint 1
+        qd_1_rrr2 = (
+        inv_r_1_rrr2_r0_y*(axis_y_rrr2_axes2_in_base_y*t_dot_x -
+            axis_y_rrr2_axes2_in_base_x*t_dot_y)
+        )
+        # (rrr2-V11) angular velocity of link 2
+        omega_2_rrr2_z = (
+        inv_rrr2_platform_joint_offset_x*(axis_y_rrr2_axes2_in_base_x*t_dot_x +
+            axis_y_rrr2_axes2_in_base_y*t_dot_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2
+        )
+        # (rrr2-V10) centripetal tensor of link 1
+        W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2
+        # (rrr2-A4) acceleration of the connection point at zero joint accelerations
+        bias_rrr2_x = (
+        -omega_2_rrr2_z*omega_2_rrr2_z*rrr2_platform_joint_offset_x -
+            W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x
+        )
+        # (rrr2-A5) acceleration of the connection point left to the joint accelerations
+        rel_rrr2_x = (
+        axis_y_rrr2_axes2_in_base_y*t_ddot_x - bias_rrr2_x - axis_y_rrr2_axes2_in_base_x*t_ddot_y
+        )
+        rel_rrr2_y = (
+        axis_y_rrr2_axes2_in_base_x*t_ddot_x + axis_y_rrr2_axes2_in_base_y*t_ddot_y +
+            W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2
+        )
+        # (rrr2-A7) acceleration of joint 1
+        qdd_1_rrr2 = inv_r_1_rrr2_r0_y*rel_rrr2_x
+        qdd_2_rrr2 = inv_rrr2_platform_joint_offset_x*(rel_rrr2_y + qdd_1_rrr2*r_1_rrr2_r0_x)
+        ok = (
+        ok & m.every((abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2
+            >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
+        )
+        out_qdd[[2][leg]] = -qdd_1_rrr2
+        out_qdd[[3][leg]] = qdd_2_rrr2
+    return ok, (out_qdd,)
+
+
+# legs: 188 mul, 106 add, 4 div, 2 sqrt, 0 trig
+def _run_legs(m, X, V, A):
+    sqrt = m.sqrt
+    shared, legs = m.constants("legs")
+    gravity_x, gravity_y = shared
+    X_0 = X[0]
+    X_1 = X[1]
+    V_0 = V[0]
+    V_1 = V[1]
+    A_0 = A[0]
+    A_1 = A[1]
+    # X: named entries
+    t_x = X_0
+    t_y = X_1
+    # V: named entries
+    t_dot_x = V_0
+    t_dot_y = V_1
+    # A: named entries
+    t_ddot_x = A_0
+    t_ddot_y = A_1
+    ok = True
+    out_leg_force = m.zeros(6)
+    out_drive = m.zeros(9)
+    for leg, k in legs[0]:
+        (
+        J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x, g_r0_y,
+            h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
+            inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
+            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+            rrr_base_point_y, rrr_joint2_offset_x, rrr_link2_mass, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        ) = k
+        # (rrr-K1) from the base point to the connection point
+        S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x
+        S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y
+        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
+        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
+        # (rrr-K3) component along the reference direction
+        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
+        # (rrr-K6) factor of the cosine in the equation of joint 1
+        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
+        # (rrr-K4) component across the reference direction
+        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
+        # (rrr-K7) factor of the sine in the equation of joint 1
+        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
+        # (rrr-K8) squared amplitude
+        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
+        # (rrr-K9) discriminant
+        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
+        # (rrr-K10) root, with the sign of the branch
+        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
+        # (rrr-K16) from the origin of joint 2 to the connection point
+        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
+        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
+        # (rrr-K19) sine of the angle of joint 2 from its reference direction
+        s_2_rrr = (
+        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        )
+        # (rrr-V2) from joint 1 to the connection point, along the links
+        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
+        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
+        r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
+        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
+        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
+        inv_rho2_1_rrr = 1.0/rho2_1_rrr
+        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
+        # (rrr-K12) sine of the angle of joint 1 from its reference direction
+        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
+        # (rrr-V5) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
+        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+        axis_y_rrr_axes2_in_base_x = (
+        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
+        )
+        axis_y_rrr_axes2_in_base_y = (
+        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
+        )
+        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
+        # (rrr-V6) reciprocal vector 2
+        w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x
+        # (rrr-V7) rate of joint 1
+        qd_1_rrr = (
+        inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x - axis_y_rrr_axes2_in_base_x*t_dot_y)
+        )
+        # (rrr-V11) angular velocity of link 2
+        omega_2_rrr_z = (
+        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
+            axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
+        )
+        # (rrr-V10) centripetal tensor of link 1
+        W_1_rrr_t = qd_1_rrr*qd_1_rrr
+        # (rrr-V12) centripetal tensor of link 2
+        W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
+        # (rrr-A4) acceleration of the connection point at zero joint accelerations
+        bias_rrr_x = (
+        -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
+        )
+        # (rrr-V5) reciprocal vector 1
+        w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
+        w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
+        # (rrr-V6) reciprocal vector 2
+        w_2_rrr_in_base_x = (
+        axis_y_rrr_axes2_in_base_x*inv_rrr_platform_joint_offset_x +
+            axis_y_rrr_axes2_in_base_y*w_2_rrr_t
+        )
+        w_2_rrr_in_base_y = (
+        axis_y_rrr_axes2_in_base_y*inv_rrr_platform_joint_offset_x -
+            axis_y_rrr_axes2_in_base_x*w_2_rrr_t
+        )
+        # (rrr-A2) acceleration of the connection point
+        S_ddot_rrr_tip_x = (
+        axis_y_rrr_axes2_in_base_y*t_ddot_x - axis_y_rrr_axes2_in_base_x*t_ddot_y
+        )
+        S_ddot_rrr_tip_y = (
+        axis_y_rrr_axes2_in_base_x*t_ddot_x + axis_y_rrr_axes2_in_base_y*t_ddot_y
+        )
+        # (rrr-A5) acceleration of the connection point left to the joint accelerations
+        rel_rrr_x = S_ddot_rrr_tip_x - bias_rrr_x
+        rel_rrr_y = S_ddot_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
+        # (rrr-A7) acceleration of joint 1
+        qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x
+        # (rrr-N3) acceleration of the reference point of link 2, less gravity
+        acc_2_rrr_x = (
+        S_ddot_rrr_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
+            axis_y_rrr_axes2_in_base_y*gravity_x
+        )
+        acc_2_rrr_y = (
+        S_ddot_rrr_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
+            axis_y_rrr_axes2_in_base_y*gravity_y
+        )
+        # (rrr-N23) inertia moment of the links that turn with link 1, about their reference points
+        mu_1_rrr_z = (
+        h_1_rrr_y*(c_1_rrr*g_r0_x + g_r0_y*s_1_rrr) - J_1_rrr_zz*qdd_1_rrr -
+            h_1_rrr_x*(c_1_rrr*g_r0_y - g_r0_x*s_1_rrr)
+        )
+        # (rrr-A15) angular acceleration of link 2
+        alpha_2_rrr_z = (
+        inv_rrr_platform_joint_offset_x*(rel_rrr_y + qdd_1_rrr*r_1_rrr_r0_x) - qdd_1_rrr
+        )
+        # (rrr-N16) inertia moment of the links that turn with link 2, about their reference points
+        mu_2_rrr_z = J_2_rrr_zz*alpha_2_rrr_z + acc_2_rrr_y*h_2_rrr_x - acc_2_rrr_x*h_2_rrr_y
+        # (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        N_1_rrr_z = mu_1_rrr_z + mu_2_rrr_z
+        # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
+        G_rrr_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_z
+        # (rrr-N33) leg force on the platform without actuation and without the mass at the connection point
+        c_rrr_x = (
+        W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_t*r_1_rrr_r0_x -
+            N_1_rrr_z)
+        )
+        c_rrr_y = W_2_rrr_t*h_2_rrr_y - G_rrr_t - alpha_2_rrr_z*h_2_rrr_x
+        # (rrr-N38) leg force on the platform without actuation, the last link's mass included
+        c_true_rrr_x = c_rrr_x - acc_2_rrr_x*rrr_link2_mass
+        c_true_rrr_y = c_rrr_y - acc_2_rrr_y*rrr_link2_mass
+        c_true_rrr_in_base_x = (
+        axis_y_rrr_axes2_in_base_x*c_true_rrr_y + axis_y_rrr_axes2_in_base_y*c_true_rrr_x
+        )
+        c_true_rrr_in_base_y = (
+        axis_y_rrr_axes2_in_base_y*c_true_rrr_y - axis_y_rrr_axes2_in_base_x*c_true_rrr_x
+        )
+        ok = (
+        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
+            0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        )
+        out_leg_force[[0][leg]] = c_true_rrr_in_base_x
+        out_leg_force[[1][leg]] = c_true_rrr_in_base_y
+        out_drive[[0][leg]] = -w_1_rrr_t
+        out_drive[[1][leg]] = w_1_rrr_t_2
+        out_drive[[3][leg]] = w_2_rrr_in_base_x
+        out_drive[[4][leg]] = w_2_rrr_in_base_y
+    for leg, k in legs[1]:
+        (
+        J_1_rrr2_zz, J_2_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, g_r0_x_2, g_r0_y_2,
+            h_1_rrr2_x, h_1_rrr2_y, h_2_rrr2_x, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
+            inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t, rrr2_base_frame_xx,
+            rrr2_base_frame_xy, rrr2_base_frame_yx, rrr2_base_frame_yy, rrr2_base_point_x,
+            rrr2_base_point_y, rrr2_joint2_offset_x, rrr2_link2_mass,
+            rrr2_platform_joint_offset_x, rrr2_platform_point_x, rrr2_platform_point_y, size_rrr2,
+        ) = k
+        # (rrr2-K1) from the base point to the connection point
+        S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x
+        S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y
+        # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y
+        Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
+        # (rrr2-K3) component along the reference direction
+        px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
+        # (rrr2-K6) factor of the cosine in the equation of joint 1
+        Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
+        # (rrr2-K4) component across the reference direction
+        py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
+        # (rrr2-K7) factor of the sine in the equation of joint 1
+        Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
+        # (rrr2-K8) squared amplitude
+        rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
+        # (rrr2-K9) discriminant
+        disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2
+        # (rrr2-K10) root, with the sign of the branch
+        root_1_rrr2 = branch_1_rrr2*sqrt(disc_1_rrr2)
+        # (rrr2-K16) from the origin of joint 2 to the connection point
+        x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x - rrr2_joint2_offset_x
+        # (rrr2-K18) cosine of the angle of joint 2 from its reference direction
+        c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x
+        # (rrr2-K19) sine of the angle of joint 2 from its reference direction
+        s_2_rrr2 = (
+        inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x
+        )
+        # (rrr2-V2) from joint 1 to the connection point, along the links
+        r_1_rrr2_t = rrr2_platform_joint_offset_x*s_2_rrr2
+        r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x
+        r_1_rrr2_r0_x = c_2_rrr2*r_1_rrr2_x + r_1_rrr2_t*s_2_rrr2
+        r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*r_1_rrr2_t
+        # (rrr2-K11) cosine of the angle of joint 1 from its reference direction
+        inv_rho2_1_rrr2 = 1.0/rho2_1_rrr2
+        c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2)
+        # (rrr2-K12) sine of the angle of joint 1 from its reference direction
+        s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2)
+        # (rrr2-V5) reciprocal vector 1
+        axis_y_rrr2_axes2_r1_x = c_1_rrr2*s_2_rrr2 - c_2_rrr2*s_1_rrr2
+        axis_y_rrr2_axes2_r1_y = c_1_rrr2*c_2_rrr2 + s_1_rrr2*s_2_rrr2
+        axis_y_rrr2_axes2_in_base_x = (
+        axis_y_rrr2_axes2_r1_x*rrr2_base_frame_xx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_xy
+        )
+        axis_y_rrr2_axes2_in_base_y = (
+        axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy
+        )
+        inv_r_1_rrr2_r0_y = 1.0/r_1_rrr2_r0_y
+        # (rrr2-V7) rate of joint 1
+        qd_1_rrr2 = (
+        inv_r_1_rrr2_r0_y*(axis_y_rrr2_axes2_in_base_y*t_dot_x -
+            axis_y_rrr2_axes2_in_base_x*t_dot_y)
+        )
+        # (rrr2-V11) angular velocity of link 2
+        omega_2_rrr2_z = (
+        inv_rrr2_platform_joint_offset_x*(axis_y_rrr2_axes2_in_base_x*t_dot_x +
+            axis_y_rrr2_axes2_in_base_y*t_dot_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2
+        )
+        # (rrr2-V10) centripetal tensor of link 1
+        W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2
+        # (rrr2-V12) centripetal tensor of link 2
+        W_2_rrr2_t = omega_2_rrr2_z*omega_2_rrr2_z
+        # (rrr2-A4) acceleration of the connection point at zero joint accelerations
+        bias_rrr2_x = (
+        -W_2_rrr2_t*rrr2_platform_joint_offset_x - W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x
+        )
+        # (rrr2-V5) reciprocal vector 1
+        w_1_rrr2_t = axis_y_rrr2_axes2_in_base_y*inv_r_1_rrr2_r0_y
+        w_1_rrr2_t_2 = axis_y_rrr2_axes2_in_base_x*inv_r_1_rrr2_r0_y
+        # (rrr2-A2) acceleration of the connection point
+        S_ddot_rrr2_tip_x = (
+        axis_y_rrr2_axes2_in_base_y*t_ddot_x - axis_y_rrr2_axes2_in_base_x*t_ddot_y
+        )
+        S_ddot_rrr2_tip_y = (
+        axis_y_rrr2_axes2_in_base_x*t_ddot_x + axis_y_rrr2_axes2_in_base_y*t_ddot_y
+        )
+        # (rrr2-A5) acceleration of the connection point left to the joint accelerations
+        rel_rrr2_x = S_ddot_rrr2_tip_x - bias_rrr2_x
+        rel_rrr2_y = S_ddot_rrr2_tip_y + W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2
+        # (rrr2-A7) acceleration of joint 1
+        qdd_1_rrr2 = inv_r_1_rrr2_r0_y*rel_rrr2_x
+        # (rrr2-N3) acceleration of the reference point of link 2, less gravity
+        acc_2_rrr2_x = (
+        S_ddot_rrr2_tip_x + axis_y_rrr2_axes2_in_base_x*gravity_y -
+            axis_y_rrr2_axes2_in_base_y*gravity_x
+        )
+        acc_2_rrr2_y = (
+        S_ddot_rrr2_tip_y - axis_y_rrr2_axes2_in_base_x*gravity_x -
+            axis_y_rrr2_axes2_in_base_y*gravity_y
+        )
+        # (rrr2-N23) inertia moment of the links that turn with link 1, about their reference points
+        mu_1_rrr2_z = (
+        h_1_rrr2_y*(c_1_rrr2*g_r0_x_2 + g_r0_y_2*s_1_rrr2) - J_1_rrr2_zz*qdd_1_rrr2 -
+            h_1_rrr2_x*(c_1_rrr2*g_r0_y_2 - g_r0_x_2*s_1_rrr2)
+        )
+        # (rrr2-A15) angular acceleration of link 2
+        alpha_2_rrr2_z = (
+        inv_rrr2_platform_joint_offset_x*(rel_rrr2_y + qdd_1_rrr2*r_1_rrr2_r0_x) - qdd_1_rrr2
+        )
+        # (rrr2-N16) inertia moment of the links that turn with link 2, about their reference points
+        mu_2_rrr2_z = (
+        J_2_rrr2_zz*alpha_2_rrr2_z + acc_2_rrr2_y*h_2_rrr2_x - acc_2_rrr2_x*h_2_rrr2_y
+        )
+        # (rrr2-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        N_1_rrr2_z = mu_1_rrr2_z + mu_2_rrr2_z
+        # (rrr2-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
+        G_rrr2_t = inv_rrr2_platform_joint_offset_x*mu_2_rrr2_z
+        # (rrr2-N33) leg force on the platform without actuation and without the mass at the connection point
+        c_rrr2_x = (
+        W_2_rrr2_t*h_2_rrr2_x + alpha_2_rrr2_z*h_2_rrr2_y -
+            inv_r_1_rrr2_r0_y*(G_rrr2_t*r_1_rrr2_r0_x - N_1_rrr2_z)
+        )
+        c_rrr2_y = W_2_rrr2_t*h_2_rrr2_y - G_rrr2_t - alpha_2_rrr2_z*h_2_rrr2_x
+        # (rrr2-N38) leg force on the platform without actuation, the last link's mass included
+        c_true_rrr2_x = c_rrr2_x - acc_2_rrr2_x*rrr2_link2_mass
+        c_true_rrr2_y = c_rrr2_y - acc_2_rrr2_y*rrr2_link2_mass
+        c_true_rrr2_in_base_x = (
+        axis_y_rrr2_axes2_in_base_x*c_true_rrr2_y + axis_y_rrr2_axes2_in_base_y*c_true_rrr2_x
+        )
+        c_true_rrr2_in_base_y = (
+        axis_y_rrr2_axes2_in_base_y*c_true_rrr2_y - axis_y_rrr2_axes2_in_base_x*c_true_rrr2_x
+        )
+        ok = (
+        ok & m.every((abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2
+            >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
+        )
+        out_leg_force[[3][leg]] = c_true_rrr2_in_base_x
+        out_leg_force[[4][leg]] = c_true_rrr2_in_base_y
+        out_drive[[6][leg]] = -w_1_rrr2_t
+        out_drive[[7][leg]] = w_1_rrr2_t_2
+    return ok, (out_leg_force, out_drive,)
+
+
+# potential: 90 mul, 57 add, 2 div, 2 sqrt, 0 trig
+def _run_potential(m, X):
+    sqrt = m.sqrt
+    shared, legs = m.constants("potential")
+    gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
+    X_0 = X[0]
+    X_1 = X[1]
+    # X: named entries
+    t_x = X_0
+    t_y = X_1
+    ok = True
+    out_potential = m.zeros(1)
+    # (V1) potential energy
+    potential_t = gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y + m_star*t_y)
+    sums = [0.0] * 1
+    for leg, k in legs[0]:
+        (
+        Kd_1_rrr_t_2, Kd_1_rrr_t_3, b_rrr_r0_x, b_rrr_r0_y, branch_1_rrr, g_r0_x, g_r0_y,
+            h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t,
+            rho2_1_rrr_t, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
+            rrr_link1_mass, rrr_platform_joint_offset_x, rrr_platform_point_x,
+            rrr_platform_point_y,
+        ) = k
+        # (rrr-K1) from the base point to the connection point
+        S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x
+        S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y
+        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
+        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
+        # (rrr-K3) component along the reference direction
+        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
+        # (rrr-K6) factor of the cosine in the equation of joint 1
+        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
+        # (rrr-K4) component across the reference direction
+        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
+        # (rrr-K7) factor of the sine in the equation of joint 1
+        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
+        # (rrr-K8) squared amplitude
+        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
+        # (rrr-K9) discriminant
+        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
+        # (rrr-K10) root, with the sign of the branch
+        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
+        # (rrr-K16) from the origin of joint 2 to the connection point
+        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
+        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
+        # (rrr-K19) sine of the angle of joint 2 from its reference direction
+        s_2_rrr = (
+        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        )
+        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
+        inv_rho2_1_rrr = 1.0/rho2_1_rrr
+        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
+        # (rrr-K12) sine of the angle of joint 1 from its reference direction
+        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
+        # (V1) potential energy
+        potential_t_3 = (
+        (c_1_rrr*g_r0_x + g_r0_y*s_1_rrr)*(h_1_rrr_x + c_2_rrr*h_2_rrr_x + h_2_rrr_y*s_2_rrr +
+            rrr_link1_mass*(b_rrr_r0_x*c_1_rrr + b_rrr_r0_y*s_1_rrr)) + (c_1_rrr*g_r0_y -
+            g_r0_x*s_1_rrr)*(h_1_rrr_y + c_2_rrr*h_2_rrr_y + rrr_link1_mass*(b_rrr_r0_y*c_1_rrr -
+            b_rrr_r0_x*s_1_rrr) - h_2_rrr_x*s_2_rrr)
+        )
+        ok = (
+        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
+            0.0))
+        )
+        sums = m.added(sums, leg, (
+        potential_t_3,
+        ))
+    total_rrr, = sums
+    sums = [0.0] * 1
+    for leg, k in legs[1]:
+        (
+        Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, b_rrr2_r0_x, b_rrr2_r0_y, branch_1_rrr2, g_r0_x_2, g_r0_y_2,
+            h_1_rrr2_x, h_1_rrr2_y, h_2_rrr2_x, h_2_rrr2_y, inv_Kd_1_rrr2_t_5, inv_uu_2_rrr2_t,
+            rho2_1_rrr2_t, rrr2_base_frame_xx, rrr2_base_frame_xy, rrr2_base_frame_yx,
+            rrr2_base_frame_yy, rrr2_base_point_x, rrr2_base_point_y, rrr2_joint2_offset_x,
+            rrr2_link1_mass, rrr2_platform_joint_offset_x, rrr2_platform_point_x,
+            rrr2_platform_point_y,
+        ) = k
+        # (rrr2-K1) from the base point to the connection point
+        S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x
+        S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y
+        # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y
+        Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
+        # (rrr2-K3) component along the reference direction
+        px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
+        # (rrr2-K6) factor of the cosine in the equation of joint 1
+        Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
+        # (rrr2-K4) component across the reference direction
+        py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
+        # (rrr2-K7) factor of the sine in the equation of joint 1
+        Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
+        # (rrr2-K8) squared amplitude
+        rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
+        # (rrr2-K9) discriminant
+        disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2
+        # (rrr2-K10) root, with the sign of the branch
+        root_1_rrr2 = branch_1_rrr2*sqrt(disc_1_rrr2)
+        # (rrr2-K16) from the origin of joint 2 to the connection point
+        x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x - rrr2_joint2_offset_x
+        # (rrr2-K18) cosine of the angle of joint 2 from its reference direction
+        c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x
+        # (rrr2-K19) sine of the angle of joint 2 from its reference direction
+        s_2_rrr2 = (
+        inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x
+        )
+        # (rrr2-K11) cosine of the angle of joint 1 from its reference direction
+        inv_rho2_1_rrr2 = 1.0/rho2_1_rrr2
+        c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2)
+        # (rrr2-K12) sine of the angle of joint 1 from its reference direction
+        s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2)
+        # (V1) potential energy
+        potential_t_2 = (
+        (c_1_rrr2*g_r0_x_2 + g_r0_y_2*s_1_rrr2)*(h_1_rrr2_x + c_2_rrr2*h_2_rrr2_x +
+            h_2_rrr2_y*s_2_rrr2 + rrr2_link1_mass*(b_rrr2_r0_x*c_1_rrr2 + b_rrr2_r0_y*s_1_rrr2)) +
+            (c_1_rrr2*g_r0_y_2 - g_r0_x_2*s_1_rrr2)*(h_1_rrr2_y + c_2_rrr2*h_2_rrr2_y +
+            rrr2_link1_mass*(b_rrr2_r0_y*c_1_rrr2 - b_rrr2_r0_x*s_1_rrr2) - h_2_rrr2_x*s_2_rrr2)
+        )
+        ok = (
+        ok & m.every((abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2
+            >= 0.0))
+        )
+        sums = m.added(sums, leg, (
+        potential_t_2,
+        ))
+    total_rrr2, = sums
+    # (V1) potential energy
+    potential = -potential_t - total_rrr - total_rrr2
+    out_potential[0] = potential
+    return ok, (out_potential,)
+
+
+# condition: 100 mul, 54 add, 4 div, 5 sqrt, 0 trig
+def _run_condition(m, X):
+    sqrt = m.sqrt
+    least = m.least
+    shared, legs = m.constants("condition")
+    b_c_x, b_c_y, legs_size = shared
+    X_0 = X[0]
+    X_1 = X[1]
+    # X: named entries
+    t_x = X_0
+    t_y = X_1
+    valid = True
+    reached = True
+    clear = True
+    out_H = m.zeros(6)
+    out_lengths = m.zeros(2)
+    out_pivots = m.zeros(2)
+    out_reach = m.zeros(2)
+    out_lengths[1] = legs_size
+    sums = [0.0] * 1
+    for leg, k in legs[0]:
+        (
+        Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_rho2_1_rrr_t_4,
+            inv_rrr_platform_joint_offset_x, inv_size_rrr, inv_uu_2_rrr_t, rho2_1_rrr_t,
+            rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
+            rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+        ) = k
+        # (rrr-K1) from the base point to the connection point
+        S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x
+        S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y
+        # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
+        Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
+        # (rrr-K3) component along the reference direction
+        px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
+        # (rrr-K6) factor of the cosine in the equation of joint 1
+        Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
+        # (rrr-K4) component across the reference direction
+        py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
+        # (rrr-K7) factor of the sine in the equation of joint 1
+        Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
+        # (rrr-K8) squared amplitude
+        rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
+        # (rrr-K9) discriminant
+        disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
+        # (rrr-K10) root, with the sign of the branch
+        root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
+        # (rrr-K16) from the origin of joint 2 to the connection point
+        x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-K18) cosine of the angle of joint 2 from its reference direction
+        c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
+        # (rrr-K19) sine of the angle of joint 2 from its reference direction
+        s_2_rrr = (
+        inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+        )
+        # (rrr-V2) from joint 1 to the connection point, along the links
+        r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
+        r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
+        r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
+        # (rrr-K11) cosine of the angle of joint 1 from its reference direction
+        inv_rho2_1_rrr = 1.0/rho2_1_rrr
+        c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
+        # (rrr-K12) sine of the angle of joint 1 from its reference direction
+        s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
+        # (rrr-V5) reciprocal vector 1
+        axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
+        axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+        axis_y_rrr_axes2_in_base_x = (
+        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
+        )
+        axis_y_rrr_axes2_in_base_y = (
+        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
+        )
+        inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
+        # (rrr-V6) reciprocal vector 2
+        w_2_rrr_t = (
+        inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*(c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr)
+        )
+        # (rrr-V5) reciprocal vector 1
+        w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
+        w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
+        # (rrr-V6) reciprocal vector 2
+        w_2_rrr_in_base_x = (
+        axis_y_rrr_axes2_in_base_x*inv_rrr_platform_joint_offset_x +
+            axis_y_rrr_axes2_in_base_y*w_2_rrr_t
+        )
+        w_2_rrr_in_base_y = (
+        axis_y_rrr_axes2_in_base_y*inv_rrr_platform_joint_offset_x -
+            axis_y_rrr_axes2_in_base_x*w_2_rrr_t
+        )
+        # (C2) rms distance of the platform points from their centroid
+        spread_t = b_c_x - rrr_platform_point_x
+        spread_t_2 = b_c_y - rrr_platform_point_y
+        spread_t_3 = spread_t*spread_t + spread_t_2*spread_t_2
+        # (rrr-K8) squared amplitude
+        pivot_size = abs(rho2_1_rrr)
+        # (rrr-V5) reciprocal vector 1
+        pivot_size_2 = abs(r_1_rrr_r0_y)
+        # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
+        least_pivots = least(sqrt(inv_rho2_1_rrr_t_4*pivot_size), inv_size_rrr*pivot_size_2)
+        clear = (
+        clear & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) &
+            (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        )
+        reached = reached & m.every((disc_1_rrr >= 0.0))
+        sums = m.added(sums, leg, (
+        spread_t_3,
+        ))
+        out_H[[0][leg]] = -w_1_rrr_t
+        out_H[[3][leg]] = w_1_rrr_t_2
+        out_H[[1][leg]] = w_2_rrr_in_base_x
+        out_H[[4][leg]] = w_2_rrr_in_base_y
+        out_pivots[[0][leg]] = least_pivots
+        out_reach[[0][leg]] = disc_1_rrr
+    total_rrr, = sums
+    sums = [0.0] * 1
+    for leg, k in legs[1]:
+        (
+        Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5, inv_rho2_1_rrr2_t_4,
+            inv_size_rrr2, inv_uu_2_rrr2_t, rho2_1_rrr2_t, rrr2_base_frame_xx, rrr2_base_frame_xy,
+            rrr2_base_frame_yx, rrr2_base_frame_yy, rrr2_base_point_x, rrr2_base_point_y,
+            rrr2_joint2_offset_x, rrr2_platform_joint_offset_x, rrr2_platform_point_x,
+            rrr2_platform_point_y, size_rrr2,
+        ) = k
+        # (rrr2-K1) from the base point to the connection point
+        S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x
+        S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y
+        # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y
+        Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
+        # (rrr2-K3) component along the reference direction
+        px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
+        # (rrr2-K6) factor of the cosine in the equation of joint 1
+        Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
+        # (rrr2-K4) component across the reference direction
+        py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
+        # (rrr2-K7) factor of the sine in the equation of joint 1
+        Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
+        # (rrr2-K8) squared amplitude
+        rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
+        # (rrr2-K9) discriminant
+        disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2
+        # (rrr2-K10) root, with the sign of the branch
+        root_1_rrr2 = branch_1_rrr2*sqrt(disc_1_rrr2)
+        # (rrr2-K16) from the origin of joint 2 to the connection point
+        x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x - rrr2_joint2_offset_x
+        # (rrr2-K18) cosine of the angle of joint 2 from its reference direction
+        c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x
+        # (rrr2-K19) sine of the angle of joint 2 from its reference direction
+        s_2_rrr2 = (
+        inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x
+        )
+        # (rrr2-V2) from joint 1 to the connection point, along the links
+        r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x
+        r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*rrr2_platform_joint_offset_x*s_2_rrr2
+        # (rrr2-K11) cosine of the angle of joint 1 from its reference direction
+        inv_rho2_1_rrr2 = 1.0/rho2_1_rrr2
+        c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2)
+        # (rrr2-K12) sine of the angle of joint 1 from its reference direction
+        s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2)
+        # (rrr2-V5) reciprocal vector 1
+        axis_y_rrr2_axes2_r1_x = c_1_rrr2*s_2_rrr2 - c_2_rrr2*s_1_rrr2
+        axis_y_rrr2_axes2_r1_y = c_1_rrr2*c_2_rrr2 + s_1_rrr2*s_2_rrr2
+        inv_r_1_rrr2_r0_y = 1.0/r_1_rrr2_r0_y
+        w_1_rrr2_t = (
+        inv_r_1_rrr2_r0_y*(axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx +
+            axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy)
+        )
+        w_1_rrr2_t_2 = (
+        inv_r_1_rrr2_r0_y*(axis_y_rrr2_axes2_r1_x*rrr2_base_frame_xx +
+            axis_y_rrr2_axes2_r1_y*rrr2_base_frame_xy)
+        )
+        # (C2) rms distance of the platform points from their centroid
+        spread_t_4 = b_c_x - rrr2_platform_point_x
+        spread_t_5 = b_c_y - rrr2_platform_point_y
+        spread_t_6 = spread_t_4*spread_t_4 + spread_t_5*spread_t_5
+        # (rrr2-K8) squared amplitude
+        pivot_size_3 = abs(rho2_1_rrr2)
+        # (rrr2-V5) reciprocal vector 1
+        pivot_size_4 = abs(r_1_rrr2_r0_y)
+        # (rrr2-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
+        least_pivots_2 = least(sqrt(inv_rho2_1_rrr2_t_4*pivot_size_3), inv_size_rrr2*pivot_size_4)
+        clear = (
+        clear & m.every((abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) &
+            (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
+        )
+        reached = reached & m.every((disc_1_rrr2 >= 0.0))
+        sums = m.added(sums, leg, (
+        spread_t_6,
+        ))
+        out_H[[2][leg]] = -w_1_rrr2_t
+        out_H[[5][leg]] = w_1_rrr2_t_2
+        out_pivots[[1][leg]] = least_pivots_2
+        out_reach[[1][leg]] = disc_1_rrr2
+    total_rrr2, = sums
+    # (C2) rms distance of the platform points from their centroid
+    spread = sqrt(0.5*total_rrr + 0.5*total_rrr2)
+    out_lengths[0] = spread
+    return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
+
+
+_Q = None  # where a quaternion begins in X
+_DEFAULT = Parameters()
+
+
+def _steps_M(m, X):
+    M_of_M, = m.run(_run_M, ((2, 2),), X)
+    return (M_of_M,)
+
+
+def _steps_Z(m, X, V):
+    Z_of_Z, = m.run(_run_Z, ((2,),), X, V)
+    return (Z_of_Z,)
+
+
+def _steps_H(m, X):
+    H_of_H, = m.run(_run_H, ((2, 3),), X)
+    return (H_of_H,)
+
+
+def _steps_inverse_kinematics(m, X):
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((4,),), X)
+    return (q_of_inverse_kinematics,)
+
+
+def _steps_joint_rates(m, X, V):
+    qd_of_joint_rates, = m.run(_run_joint_rates, ((4,),), X, V)
+    return (qd_of_joint_rates,)
+
+
+def _steps_joint_accelerations(m, X, V, A):
+    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ((4,),), X, V, A)
+    return (qdd_of_joint_accelerations,)
+
+
+def _steps_dynamics(m, X, V):
+    (
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
+    ) = m.run(_run_dynamics, ((2, 2), (2,), (2, 3)), X, V)
+    return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
+
+
+def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
+    required_of_required, H_of_required = m.run(_run_required, ((2,), (2, 3)), X, V, A)
+    extend_1 = wrench
+    subtract_2 = required_of_required - extend_1
+    inverse_root_3 = 1.0 / np.sqrt(weights)
+    scale_columns_4 = H_of_required * inverse_root_3
+    least_norm_5 = _least_norm(scale_columns_4, subtract_2)
+    multiply_6 = inverse_root_3 * least_norm_5
+    return (multiply_6,)
+
+
+def _steps_forward_dynamics(m, X, V, tau, wrench):
+    (
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
+    ) = m.run(_run_dynamics, ((2, 2), (2,), (2, 3)), X, V)
+    times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
+    extend_2 = wrench
+    add_3 = times_1 + extend_2
+    subtract_4 = add_3 - Z_of_dynamics
+    solve_5 = _solve(M_of_dynamics, subtract_4)
+    return (solve_5,)
+
+
+def _steps_complete_acceleration(m, X, V, A, wrench):
+    same_1 = A
+    return (same_1,)
+
+
+def _steps_leg_reactions(m, X, V, A, wrench):
+    required_of_required, H_of_required = m.run(_run_required, ((2,), (2, 3)), X, V, A)
+    extend_1 = wrench
+    subtract_2 = required_of_required - extend_1
+    least_norm_3 = _least_norm(H_of_required, subtract_2)
+    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ((2, 3), (3, 3)), X, V, A)
+    add_forces_4 = _with_forces(leg_force_of_legs, least_norm_3, drive_of_legs, [0, 0, 1])
+    return (add_forces_4,)
+
+
+def _steps_energy(m, X, V):
+    M_of_M, = m.run(_run_M, ((2, 2),), X)
+    potential_of_potential, = m.run(_run_potential, ((1,),), X)
+    half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
+    entry_2 = potential_of_potential[0]
+    return (half_form_1, entry_2,)
+
+
+def _steps_null_space(m, X):
+    H_of_H, = m.run(_run_H, ((2, 3),), X)
+    null_basis_1 = _null_basis(H_of_H, 2)
+    return (null_basis_1,)
+
+
+def _steps_condition(m, X, length):
+    (
+    H_of_condition, lengths_of_condition, pivots_of_condition, reach_of_condition,
+    ) = m.run(_run_condition, ((2, 3), (2,), (2,), (2,)), X)
+    singular_values_1 = _singular_values(H_of_condition)
+    return (singular_values_1, pivots_of_condition,)
+
+
+def _steps_mismatch(m, X, q_actuated):
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((4,),), X)
+    take_1 = q_of_inverse_kinematics[0:3]
+    subtract_2 = q_actuated - take_1
+    wrap_turns_3 = _wrapped(subtract_2, [0, 1, 2])
+    return (wrap_turns_3,)
+
+
+def _steps_slope(m, X):
+    H_of_H, = m.run(_run_H, ((2, 3),), X)
+    return (H_of_H,)
+
+
+def _steps_forward_kinematics(m, q_actuated, X0):
+    X_found = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    return (X_found,)
+
+
+def M(X, p=None):
+    """Inertia matrix M.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        M: inertia matrix M (..., NV, NV).
+    """
+    return _call(
+        "M", _steps_M, p,
+        ("X", X, (NQ,)),
+    )
+
+
+def Z(X, V, p=None):
+    """Velocity and gravity terms Z.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        Z: velocity and gravity terms Z (..., NV).
+    """
+    return _call(
+        "Z", _steps_Z, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+    )
+
+
+def H(X, p=None):
+    """Force transformation H: actuators to task space.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        H: force transformation H: actuators to task space (..., NV, NU).
+    """
+    return _call(
+        "H", _steps_H, p,
+        ("X", X, (NQ,)),
     )
 
 
 def inverse_kinematics(X, p=None):
-    """Displacements q (..., NJ) of all joints at X, on the assembly branch of home."""
-    return _evaluate(_INVERSE_KINEMATICS, p, X=_vector("inverse_kinematics", "X", X, NQ))[0]
+    """Displacements q of all joints.
+
+    They are those of the assembly branch of home.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        q: displacements q of all joints (..., NJ).
+    """
+    return _call(
+        "inverse_kinematics", _steps_inverse_kinematics, p,
+        ("X", X, (NQ,)),
+    )
 
 
 def joint_rates(X, V, p=None):
-    """Rates of all joints (..., NJ)."""
-    X, V = _vector("joint_rates", "X", X, NQ), _vector("joint_rates", "V", V, NV)
-    return _evaluate(_JOINT_RATES, p, X=X, V=V)[0]
+    """Rates of all joints.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        qd: rates of all joints (..., NJ).
+    """
+    return _call(
+        "joint_rates", _steps_joint_rates, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+    )
 
 
 def joint_accelerations(X, V, A, p=None):
-    """Accelerations of all joints (..., NJ)."""
-    X, V = _vector("joint_accelerations", "X", X, NQ), _vector("joint_accelerations", "V", V, NV)
-    return _evaluate(
-        _JOINT_ACCELERATIONS, p, X=X, V=V, A=_vector("joint_accelerations", "A", A, NV))[0]
+    """Accelerations of all joints.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        A: acceleration (..., NV).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        qdd: accelerations of all joints (..., NJ).
+    """
+    return _call(
+        "joint_accelerations", _steps_joint_accelerations, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+        ("A", A, (NV,)),
+    )
+
+
+def dynamics(X, V, p=None):
+    """M, Z and H together, sharing the work.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        M: inertia matrix (..., NV, NV).
+        Z: velocity and gravity terms (..., NV).
+        H: force transformation (..., NV, NU).
+    """
+    return _call(
+        "dynamics", _steps_dynamics, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+    )
+
+
+def inverse_dynamics(X, V, A, p=None, *, wrench=None, weights=None):
+    """Actuator forces tau for the acceleration A, by Eq. 3.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        A: acceleration (..., NV).
+        wrench: external wrench on the platform, by default zero (..., NW).
+        weights: positive weights of the actuator forces: least sum of weights tau^2, by default
+            one (..., NU).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        tau: actuator forces [N or N m] (..., NU).
+    """
+    return _call(
+        "inverse_dynamics", _steps_inverse_dynamics, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+        ("A", A, (NV,)),
+        ("wrench", wrench, (NW,), 0.0),
+        ("weights", weights, (NU,), 1.0, "positive"),
+    )
+
+
+def forward_dynamics(X, V, tau, p=None, *, wrench=None):
+    """Acceleration A under the actuator forces tau and the wrench.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        tau: actuator forces [N or N m] (..., NU).
+        wrench: external wrench on the platform, by default zero (..., NW).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        A: acceleration (..., NV).
+    """
+    return _call(
+        "forward_dynamics", _steps_forward_dynamics, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+        ("tau", tau, (NU,)),
+        ("wrench", wrench, (NW,), 0.0),
+    )
+
+
+def complete_acceleration(X, V, A, p=None, *, wrench=None):
+    """A with the entries of passive extra coordinates that the others allow.
+
+    It is A: there are no passive extra coordinates, whose accelerations would follow.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        A: acceleration (..., NV).
+        wrench: external wrench on the platform, by default zero (..., NW).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        completed: acceleration (..., NV).
+    """
+    return _call(
+        "complete_acceleration", _steps_complete_acceleration, p,
+        ("X", X, (NQ,), None, "unused"),
+        ("V", V, (NV,), None, "unused"),
+        ("A", A, (NV,)),
+        ("wrench", wrench, (NW,), 0.0, "unused"),
+    )
 
 
 def leg_reactions(X, V, A, p=None, *, wrench=None):
-    """Force of each leg on the platform (..., legs, 3) at its platform joint, base axes.
+    """Force of each leg on the platform at its platform joint, base axes.
 
-    The drives give the forces of `inverse_dynamics`.
+    The actuators give the forces of `inverse_dynamics`.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        A: acceleration (..., NV).
+        wrench: external wrench on the platform, by default zero (..., NW).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        forces: leg on platform [N, N m] (..., 2, 3).
     """
-    X, V = _vector("leg_reactions", "X", X, NQ), _vector("leg_reactions", "V", V, NV)
-    A = _vector("leg_reactions", "A", A, NV)
-    wrench = None if wrench is None else _vector("leg_reactions", "wrench", wrench, NW)
-    forces, drive, *directions = _evaluate(_LEGS_FORCE, p, X=X, V=V, A=A)
-    tau = inverse_dynamics(X, V, A, p, wrench=wrench)
-    parts = [(tau, drive, _ACTUATOR_LEGS)]
-    forces = np.array(np.broadcast_to(forces, (*parts[0][0].shape[:-1], *forces.shape[-2:])))
-    for amounts, vectors, legs in parts:
-        for k, leg in enumerate(legs):
-            forces[..., leg, :] += amounts[..., k, None] * vectors[..., k, :]
-    return _together(np.isnan(forces).any(axis=(-1, -2)), (forces, 2))[0]
+    return _call(
+        "leg_reactions", _steps_leg_reactions, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+        ("A", A, (NV,)),
+        ("wrench", wrench, (NW,), 0.0),
+    )
 
 
 def energy(X, V, p=None):
-    """Kinetic and potential energy (...,); the latter is zero at the base origin."""
-    X, V = _vector("energy", "X", X, NQ), _vector("energy", "V", V, NV)
-    _lead(X=X, V=V)
-    inertia = M(X, p)
-    with np.errstate(all="ignore"):
-        kinetic = 0.5 * np.einsum("...i,...ij,...j->...", V, inertia, V)
-    potential = _evaluate(_POTENTIAL, p, X=X)[0][..., 0]
-    known = np.where(np.isfinite(kinetic) & np.isfinite(potential), 0.0, np.nan)
-    return kinetic + known, potential + known
+    """Kinetic and potential energy [J]; the latter is zero at the base origin.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        kinetic: kinetic energy [J] (...,).
+        potential: potential energy [J] (...,).
+    """
+    return _call(
+        "energy", _steps_energy, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+    )
+
+
+def null_space(X, p=None):
+    """Orthonormal basis of the tau with H tau = 0.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        basis: columns (..., NU, 1).
+    """
+    return _call(
+        "null_space", _steps_null_space, p,
+        ("X", X, (NQ,)),
+    )
+
+
+def condition(X, p=None, *, length=None):
+    """How far a pose is from singularities: singular values of H, rows of moments divided by a
+    length; for every leg the least tested pivot as a fraction of its scale.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        length: by which rows of moments are divided [m]; by default the rms distance of the
+            platform points from their centroid, or where they coincide the rms size of the legs
+            (...,).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        sigma: singular values, in descending order (..., 2).
+        legs: least pivots; a leg is refused at 1.5e-8 (..., 2).
+        status: 0 OK, 1 unreachable, 2 singular leg, 3 invalid, 4 not converged, as in C (...).
+    """
+    return _call(
+        "condition", _steps_condition, p,
+        ("X", X, (NQ,)),
+        ("length", length, (), 0.0, "positive"),
+        mode=_Judged,
+    )
 
 
 def forward_kinematics(q_actuated, X0, p=None):
-    """X at which the driven joints stand at q_actuated (..., NU), by Gauss-Newton from X0.
+    """X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0.
 
-    Extra coordinates that the drives do not determine stay.  NaN where no X is found.
+    Extra coordinates that actuators do not determine stay.
+
+    Impossible where no pose is found.
+
+    Args:
+        q_actuated: displacements of the actuated joints [m or rad] (..., NU).
+        X0: first guess of the pose (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        X: pose (..., NQ).
     """
-    q_actuated = _vector("forward_kinematics", "q_actuated", q_actuated, NU)
-    X0, p = _vector("forward_kinematics", "X0", X0, NQ), _given(p)
-    lead = _lead(q_actuated=q_actuated, X0=X0)
-    target = np.broadcast_to(q_actuated, (*lead, NU)).reshape(-1, NU)
-    X = np.broadcast_to(X0, (*lead, NQ)).reshape(-1, NQ).copy()
-    found = [_find_pose(q, x, p) for q, x in zip(target, X)]
-    return np.array(found).reshape(*lead, NQ)
-
-
-def _mismatch(q_actuated, X, p):
-    """Residual of driven joints: turns modulo 2 pi."""
-    gap = q_actuated - inverse_kinematics(X, p)[list(_DRIVEN_JOINTS)]
-    gap[list(_TURNING_DRIVES)] = np.remainder(gap[list(_TURNING_DRIVES)] + np.pi, 2 * np.pi) - np.pi
-    return gap
-
-
-def _find_pose(q_actuated, X, p):
-    """Gauss-Newton with step halving for one state."""
-    failure = np.full(NQ, np.nan)
-    if not (np.isfinite(q_actuated).all() and np.isfinite(X).all()):
-        return failure
-    gap = _mismatch(q_actuated, X, p)
-    for _ in range(50):
-        size = np.max(np.abs(gap), initial=0.0)
-        if not np.isfinite(size):
-            return failure
-        if size < 1e-13:
-            break
-        jacobian = H(X, p)
-        if np.isnan(jacobian).any():
-            return failure
-        step = np.linalg.lstsq(jacobian.T, gap, rcond=1e-10)[0]
-        for halving in range(12):
-            trial = _moved(X, step * 0.5**halving)
-            trial_gap = _mismatch(q_actuated, trial, p)
-            if np.max(np.abs(trial_gap)) < size:
-                break
-        else:
-            break
-        X, gap = trial, trial_gap
-    return X if np.max(np.abs(gap), initial=0.0) < 1e-9 else failure
-
-
-def _moved(X, step):
-    """X moved by a small step."""
-    return X + step
+    return _call(
+        "forward_kinematics", _steps_forward_kinematics, p,
+        ("q_actuated", q_actuated, (NU,)),
+        ("X0", X0, (NQ,)),
+    )

@@ -19,7 +19,9 @@ arrays, ValueError for wrong shapes.  p, a Parameters of this module, follows wh
 position or keyword; all else is given by keyword.
 """
 
+import math
 import warnings
+from itertools import compress
 from numbers import Real
 
 import numpy as np
@@ -31,11 +33,12 @@ __all__ = [
     "NC",
     "NW",
     "NJ",
+    "H",
     "HOME_Q",
     "HOME_X",
-    "H",
     "M",
     "Parameters",
+    "X_dot",
     "Z",
     "complete_acceleration",
     "condition",
@@ -52,7 +55,6 @@ __all__ = [
     "pose",
     "pose_from_rpy",
     "rotation",
-    "X_dot",
 ]
 
 NQ = 7
@@ -65,13 +67,7 @@ NJ = 30
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
 
-_LEGS = {  # positions of the legs of each type
-    "rrrrrr": (0, 1, 2, 3, 4, 5),
-}
 _DRIVEN_JOINTS = (1, 6, 11, 16, 21, 26)
-_TURNING_DRIVES = (0, 1, 2, 3, 4, 5)
-_ACTUATOR_LEGS = (0, 1, 2, 3, 4, 5)
-_DRIVEN_ROWS = (0, 1, 2, 3, 4, 5)
 
 _DEFAULTS = {
     "gravity": [0.0, 0.0, -9.81],
@@ -436,24 +432,32 @@ def _unfit(value):
     return "" if array.dtype.kind in "iuf" else _KINDS.get(array.dtype.kind, array.dtype.name)
 
 
-def _vector(function, name, value, size):
-    """An argument as an array of floats (..., size), or an error that names it."""
+def _argument(function, name, value, shape, default=None, rule=""):
+    """An argument as an array of floats (..., *shape), or an error that names it."""
+    if value is None and default is not None:
+        return np.full(shape, default)
+    function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
-        value = _numbers(function, name, value)
-    if value.ndim == 0 or value.shape[-1] != size:
-        raise ValueError(f"{function}: {name} has shape {value.shape}, expected (..., {size})")
-    return value
+        array = _numbers(function, name, value)
+    if not shape:
+        if array.shape or not 0.0 < array < np.inf:
+            raise ValueError(f"{function}: {name} is {value!r}, expected a positive number")
+    elif array.shape[-len(shape) :] != shape:
+        wanted = ", ".join(map(str, ("...", *shape)))
+        raise ValueError(f"{function}: {name} has shape {array.shape}, expected ({wanted})")
+    elif rule == "positive" and not np.all((array > 0.0) & (array < np.inf)):
+        raise ValueError(f"{function}: {name} must be positive and finite")
+    return array
 
 
-def _lead(**arguments):
-    """Leading shape that arguments (..., n) have in common; ValueError that names them if none."""
-    leads = [v.shape[:-1] for v in arguments.values()]
-    if not any(leads):
+def _lead(leads):
+    """Leading shape that arguments have in common; ValueError that names them if none."""
+    if not any(leads.values()):
         return ()
     try:
-        return np.broadcast_shapes(*leads)
+        return np.broadcast_shapes(*leads.values())
     except ValueError:
-        shapes = ", ".join(f"{name} {lead}" for name, lead in zip(arguments, leads))
+        shapes = ", ".join(f"{name} {lead}" for name, lead in leads.items())
         raise ValueError(f"leading dimensions do not broadcast: {shapes}") from None
 
 
@@ -544,7 +548,6 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
-    _rrrrrr = (len(_LEGS["rrrrrr"]),)
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     gravity_z = p.gravity[2]
@@ -831,20 +834,20 @@ def _prepare(p):
     )
     # (rrrrrr-V13) force part of reciprocal wrench 1
     inv_size = 1.0/size
-    total_rrrrrr = np.sum(np.broadcast_to(rrrrrr_link5_mass, _rrrrrr))
-    total_rrrrrr_x = np.sum(np.broadcast_to(h_star_t_4, _rrrrrr))
-    total_rrrrrr_y = np.sum(np.broadcast_to(h_star_t_5, _rrrrrr))
-    total_rrrrrr_z = np.sum(np.broadcast_to(h_star_t_6, _rrrrrr))
-    total_rrrrrr_xx = np.sum(np.broadcast_to(J_star_t_15, _rrrrrr))
-    total_rrrrrr_xy = np.sum(np.broadcast_to(J_star_t_16, _rrrrrr))
-    total_rrrrrr_xz = np.sum(np.broadcast_to(J_star_t_17, _rrrrrr))
-    total_rrrrrr_yy = np.sum(np.broadcast_to(J_star_t_18, _rrrrrr))
-    total_rrrrrr_yz = np.sum(np.broadcast_to(J_star_t_19, _rrrrrr))
-    total_rrrrrr_zz = np.sum(np.broadcast_to(J_star_t_20, _rrrrrr))
-    total_rrrrrr_x_2 = np.sum(np.broadcast_to(rrrrrr_platform_point_x, _rrrrrr))
-    total_rrrrrr_y_2 = np.sum(np.broadcast_to(rrrrrr_platform_point_y, _rrrrrr))
-    total_rrrrrr_z_2 = np.sum(np.broadcast_to(rrrrrr_platform_point_z, _rrrrrr))
-    total_rrrrrr_2 = np.sum(np.broadcast_to(size_t_2, _rrrrrr))
+    total_rrrrrr = np.sum(np.broadcast_to(rrrrrr_link5_mass, 6))
+    total_rrrrrr_x = np.sum(np.broadcast_to(h_star_t_4, 6))
+    total_rrrrrr_y = np.sum(np.broadcast_to(h_star_t_5, 6))
+    total_rrrrrr_z = np.sum(np.broadcast_to(h_star_t_6, 6))
+    total_rrrrrr_xx = np.sum(np.broadcast_to(J_star_t_15, 6))
+    total_rrrrrr_xy = np.sum(np.broadcast_to(J_star_t_16, 6))
+    total_rrrrrr_xz = np.sum(np.broadcast_to(J_star_t_17, 6))
+    total_rrrrrr_yy = np.sum(np.broadcast_to(J_star_t_18, 6))
+    total_rrrrrr_yz = np.sum(np.broadcast_to(J_star_t_19, 6))
+    total_rrrrrr_zz = np.sum(np.broadcast_to(J_star_t_20, 6))
+    total_rrrrrr_x_2 = np.sum(np.broadcast_to(rrrrrr_platform_point_x, 6))
+    total_rrrrrr_y_2 = np.sum(np.broadcast_to(rrrrrr_platform_point_y, 6))
+    total_rrrrrr_z_2 = np.sum(np.broadcast_to(rrrrrr_platform_point_z, 6))
+    total_rrrrrr_2 = np.sum(np.broadcast_to(size_t_2, 6))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_rrrrrr
     # (L2) first moment about the platform origin
@@ -872,168 +875,225 @@ def _prepare(p):
     b_c_z = 0.16666666666666666*total_rrrrrr_z_2
     # (C3) rms size of the legs, taken where the platform points coincide
     legs_size = spread_t*sqrt(total_rrrrrr_2)
-    shared = {
-        "J_star_t_22": float(J_star_t_22),
-        "J_star_t_24": float(J_star_t_24),
-        "J_star_xx": float(J_star_xx),
-        "J_star_xy": float(J_star_xy),
-        "J_star_xz": float(J_star_xz),
-        "J_star_yy": float(J_star_yy),
-        "J_star_yz": float(J_star_yz),
-        "J_star_zz": float(J_star_zz),
-        "Z_p_t": float(Z_p_t),
-        "Z_p_t_2": float(Z_p_t_2),
-        "Z_p_t_3": float(Z_p_t_3),
-        "b_c_x": float(b_c_x),
-        "b_c_y": float(b_c_y),
-        "b_c_z": float(b_c_z),
-        "gravity_x": float(gravity_x),
-        "gravity_y": float(gravity_y),
-        "gravity_z": float(gravity_z),
-        "h_star_x": float(h_star_x),
-        "h_star_y": float(h_star_y),
-        "h_star_z": float(h_star_z),
-        "legs_size": float(legs_size),
-        "m_star": float(m_star),
-        "spread_t": float(spread_t),
+    return {
+        "dynamics": (
+        (J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
+                J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x,
+                h_star_y, h_star_z, m_star,),
+            (
+                (6,
+        (J_1_xx, J_2_xx, J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_2_zz, J_3_xx, J_3_xy, J_3_xz, J_3_yy,
+                    J_3_yz, J_3_zz, J_4_xx, J_4_xy, J_4_xz, J_4_yy, J_4_yz, J_5_xx, J_5_xy,
+                    J_5_xz, J_5_yy, J_5_yz, J_5_zz, Jc_2_t, Jc_3_t_2, Jc_3_t_3, Jc_4_xx,
+                    Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz,
+                    Sigma_4_xx, Sigma_4_yy, Sigma_4_zz, Sigma_5_xx, Sigma_5_yy, Sigma_5_zz,
+                    g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y,
+                    h_3_z, h_4_x, h_4_y, h_4_z, h_5_x, h_5_y, h_5_z, hc_3_x, rrrrrr_base_frame_xx,
+                    rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
+                    rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx,
+                    rrrrrr_base_frame_zy, rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x,
+                    rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x,
+                    rrrrrr_link3_mass, rrrrrr_link4_mass, rrrrrr_platform_joint_axis_platform_x,
+                    rrrrrr_platform_joint_axis_platform_y, rrrrrr_platform_joint_axis_platform_z,
+                    rrrrrr_platform_joint_offset_x, rrrrrr_platform_point_x,
+                    rrrrrr_platform_point_y, rrrrrr_platform_point_z, size, size_t,),
+                ),
+            ),
+        ),
+        "M": (
+        (J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
+                h_star_z, m_star,),
+            (
+                (6,
+        (J_1_xx, J_2_xx, J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_2_zz, J_3_xx, J_3_xy, J_3_xz, J_3_yy,
+                    J_3_yz, J_3_zz, J_4_xx, J_4_xy, J_4_xz, J_4_yy, J_4_yz, J_5_xx, J_5_xy,
+                    J_5_xz, J_5_yy, J_5_yz, J_5_zz, Jc_2_t, Jc_3_t_2, Jc_3_t_3, Jc_4_xx, h_3_y,
+                    h_3_z, h_4_y, h_4_z, h_5_x, h_5_y, h_5_z, hc_3_x, rrrrrr_base_frame_xx,
+                    rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
+                    rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx,
+                    rrrrrr_base_frame_zy, rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x,
+                    rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x,
+                    rrrrrr_platform_joint_axis_platform_x, rrrrrr_platform_joint_axis_platform_y,
+                    rrrrrr_platform_joint_axis_platform_z, rrrrrr_platform_joint_offset_x,
+                    rrrrrr_platform_point_x, rrrrrr_platform_point_y, rrrrrr_platform_point_z,
+                    size, size_t,),
+                ),
+            ),
+        ),
+        "Z": (
+        (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2,
+                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
+            (
+                (6,
+        (J_1_xx, J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, J_4_xy, J_4_xz, J_4_yz, J_5_xy,
+                    J_5_xz, J_5_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy,
+                    Sigma_3_zz, Sigma_4_xx, Sigma_4_yy, Sigma_4_zz, Sigma_5_xx, Sigma_5_yy,
+                    Sigma_5_zz, g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x,
+                    h_3_y, h_3_z, h_4_x, h_4_y, h_4_z, h_5_x, h_5_y, h_5_z, rrrrrr_base_frame_xx,
+                    rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
+                    rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx,
+                    rrrrrr_base_frame_zy, rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x,
+                    rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x,
+                    rrrrrr_link3_mass, rrrrrr_link4_mass, rrrrrr_platform_joint_axis_platform_x,
+                    rrrrrr_platform_joint_axis_platform_y, rrrrrr_platform_joint_axis_platform_z,
+                    rrrrrr_platform_joint_offset_x, rrrrrr_platform_point_x,
+                    rrrrrr_platform_point_y, rrrrrr_platform_point_z, size, size_t,),
+                ),
+            ),
+        ),
+        "H": (
+        (),
+            (
+                (6,
+        (rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
+                    rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx,
+                    rrrrrr_base_frame_zy, rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x,
+                    rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x,
+                    rrrrrr_platform_joint_axis_platform_x, rrrrrr_platform_joint_axis_platform_y,
+                    rrrrrr_platform_joint_axis_platform_z, rrrrrr_platform_joint_offset_x,
+                    rrrrrr_platform_point_x, rrrrrr_platform_point_y, rrrrrr_platform_point_z,
+                    size, size_t,),
+                ),
+            ),
+        ),
+        "required": (
+        (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
+                gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
+            (
+                (6,
+        (J_1_xx, J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, J_4_xy, J_4_xz, J_4_yz, J_5_xy,
+                    J_5_xz, J_5_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy,
+                    Sigma_3_zz, Sigma_4_xx, Sigma_4_yy, Sigma_4_zz, Sigma_5_xx, Sigma_5_yy,
+                    Sigma_5_zz, g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x,
+                    h_3_y, h_3_z, h_4_x, h_4_y, h_4_z, h_5_x, h_5_y, h_5_z, rrrrrr_base_frame_xx,
+                    rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
+                    rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx,
+                    rrrrrr_base_frame_zy, rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x,
+                    rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x,
+                    rrrrrr_link3_mass, rrrrrr_link4_mass, rrrrrr_platform_joint_axis_platform_x,
+                    rrrrrr_platform_joint_axis_platform_y, rrrrrr_platform_joint_axis_platform_z,
+                    rrrrrr_platform_joint_offset_x, rrrrrr_platform_point_x,
+                    rrrrrr_platform_point_y, rrrrrr_platform_point_z, size, size_t,),
+                ),
+            ),
+        ),
+        "inverse_kinematics": (
+        (),
+            (
+                (6,
+        (),
+                ),
+            ),
+        ),
+        "joint_rates": (
+        (),
+            (
+                (6,
+        (rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
+                    rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx,
+                    rrrrrr_base_frame_zy, rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x,
+                    rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x,
+                    rrrrrr_platform_joint_axis_platform_x, rrrrrr_platform_joint_axis_platform_y,
+                    rrrrrr_platform_joint_axis_platform_z, rrrrrr_platform_joint_offset_x,
+                    rrrrrr_platform_point_x, rrrrrr_platform_point_y, rrrrrr_platform_point_z,
+                    size, size_t,),
+                ),
+            ),
+        ),
+        "joint_accelerations": (
+        (),
+            (
+                (6,
+        (rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
+                    rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx,
+                    rrrrrr_base_frame_zy, rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x,
+                    rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x,
+                    rrrrrr_platform_joint_axis_platform_x, rrrrrr_platform_joint_axis_platform_y,
+                    rrrrrr_platform_joint_axis_platform_z, rrrrrr_platform_joint_offset_x,
+                    rrrrrr_platform_point_x, rrrrrr_platform_point_y, rrrrrr_platform_point_z,
+                    size, size_t,),
+                ),
+            ),
+        ),
+        "legs": (
+        (gravity_x, gravity_y, gravity_z,),
+            (
+                (6,
+        (J_1_xx, J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, J_4_xy, J_4_xz, J_4_yz, J_5_xy,
+                    J_5_xz, J_5_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy,
+                    Sigma_3_zz, Sigma_4_xx, Sigma_4_yy, Sigma_4_zz, Sigma_5_xx, Sigma_5_yy,
+                    Sigma_5_zz, g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x,
+                    h_3_y, h_3_z, h_4_x, h_4_y, h_4_z, h_5_x, h_5_y, h_5_z, rrrrrr_base_frame_xx,
+                    rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
+                    rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx,
+                    rrrrrr_base_frame_zy, rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x,
+                    rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x,
+                    rrrrrr_link3_mass, rrrrrr_link4_mass, rrrrrr_link5_mass,
+                    rrrrrr_platform_joint_axis_platform_x, rrrrrr_platform_joint_axis_platform_y,
+                    rrrrrr_platform_joint_axis_platform_z, rrrrrr_platform_joint_offset_x,
+                    rrrrrr_platform_point_x, rrrrrr_platform_point_y, rrrrrr_platform_point_z,
+                    size, size_t,),
+                ),
+            ),
+        ),
+        "potential": (
+        (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
+            (
+                (6,
+        (b_r0_x, b_r0_y, b_r0_z, g_r0_x, g_r0_y, g_r0_z, h_1_x, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z,
+                    h_3_x, h_3_y, h_3_z, h_4_x, h_4_y, h_4_z, h_5_x, h_5_y, h_5_z,
+                    rrrrrr_joint2_offset_x, rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x,
+                    rrrrrr_link1_mass, rrrrrr_link2_mass, rrrrrr_link3_mass, rrrrrr_link4_mass,),
+                ),
+            ),
+        ),
+        "condition": (
+        (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
+            (
+                (6,
+        (inv_size, rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz,
+                    rrrrrr_base_frame_yx, rrrrrr_base_frame_yy, rrrrrr_base_frame_yz,
+                    rrrrrr_base_frame_zx, rrrrrr_base_frame_zy, rrrrrr_base_frame_zz,
+                    rrrrrr_joint2_offset_x, rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x,
+                    rrrrrr_joint5_offset_x, rrrrrr_platform_joint_axis_platform_x,
+                    rrrrrr_platform_joint_axis_platform_y, rrrrrr_platform_joint_axis_platform_z,
+                    rrrrrr_platform_joint_offset_x, rrrrrr_platform_point_x,
+                    rrrrrr_platform_point_y, rrrrrr_platform_point_z, size, size_t,),
+                ),
+            ),
+        ),
+        "closure_rrrrrr": (
+        (),
+            (
+                (6,
+        (rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
+                    rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx,
+                    rrrrrr_base_frame_zy, rrrrrr_base_frame_zz, rrrrrr_base_point_x,
+                    rrrrrr_base_point_y, rrrrrr_base_point_z, rrrrrr_joint2_offset_x,
+                    rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x,
+                    rrrrrr_platform_joint_axis_platform_x, rrrrrr_platform_joint_axis_platform_y,
+                    rrrrrr_platform_joint_axis_platform_z, rrrrrr_platform_joint_offset_x,
+                    rrrrrr_platform_point_x, rrrrrr_platform_point_y, rrrrrr_platform_point_z,),
+                ),
+            ),
+        ),
     }
-    legs = {
-        "rrrrrr": {
-            "J_1_xx": np.broadcast_to(J_1_xx, _rrrrrr),
-            "J_2_xx": np.broadcast_to(J_2_xx, _rrrrrr),
-            "J_2_xy": np.broadcast_to(J_2_xy, _rrrrrr),
-            "J_2_xz": np.broadcast_to(J_2_xz, _rrrrrr),
-            "J_2_yy": np.broadcast_to(J_2_yy, _rrrrrr),
-            "J_2_yz": np.broadcast_to(J_2_yz, _rrrrrr),
-            "J_2_zz": np.broadcast_to(J_2_zz, _rrrrrr),
-            "J_3_xx": np.broadcast_to(J_3_xx, _rrrrrr),
-            "J_3_xy": np.broadcast_to(J_3_xy, _rrrrrr),
-            "J_3_xz": np.broadcast_to(J_3_xz, _rrrrrr),
-            "J_3_yy": np.broadcast_to(J_3_yy, _rrrrrr),
-            "J_3_yz": np.broadcast_to(J_3_yz, _rrrrrr),
-            "J_3_zz": np.broadcast_to(J_3_zz, _rrrrrr),
-            "J_4_xx": np.broadcast_to(J_4_xx, _rrrrrr),
-            "J_4_xy": np.broadcast_to(J_4_xy, _rrrrrr),
-            "J_4_xz": np.broadcast_to(J_4_xz, _rrrrrr),
-            "J_4_yy": np.broadcast_to(J_4_yy, _rrrrrr),
-            "J_4_yz": np.broadcast_to(J_4_yz, _rrrrrr),
-            "J_5_xx": np.broadcast_to(J_5_xx, _rrrrrr),
-            "J_5_xy": np.broadcast_to(J_5_xy, _rrrrrr),
-            "J_5_xz": np.broadcast_to(J_5_xz, _rrrrrr),
-            "J_5_yy": np.broadcast_to(J_5_yy, _rrrrrr),
-            "J_5_yz": np.broadcast_to(J_5_yz, _rrrrrr),
-            "J_5_zz": np.broadcast_to(J_5_zz, _rrrrrr),
-            "Jc_2_t": np.broadcast_to(Jc_2_t, _rrrrrr),
-            "Jc_3_t_2": np.broadcast_to(Jc_3_t_2, _rrrrrr),
-            "Jc_3_t_3": np.broadcast_to(Jc_3_t_3, _rrrrrr),
-            "Jc_4_xx": np.broadcast_to(Jc_4_xx, _rrrrrr),
-            "Sigma_2_xx": np.broadcast_to(Sigma_2_xx, _rrrrrr),
-            "Sigma_2_yy": np.broadcast_to(Sigma_2_yy, _rrrrrr),
-            "Sigma_2_zz": np.broadcast_to(Sigma_2_zz, _rrrrrr),
-            "Sigma_3_xx": np.broadcast_to(Sigma_3_xx, _rrrrrr),
-            "Sigma_3_yy": np.broadcast_to(Sigma_3_yy, _rrrrrr),
-            "Sigma_3_zz": np.broadcast_to(Sigma_3_zz, _rrrrrr),
-            "Sigma_4_xx": np.broadcast_to(Sigma_4_xx, _rrrrrr),
-            "Sigma_4_yy": np.broadcast_to(Sigma_4_yy, _rrrrrr),
-            "Sigma_4_zz": np.broadcast_to(Sigma_4_zz, _rrrrrr),
-            "Sigma_5_xx": np.broadcast_to(Sigma_5_xx, _rrrrrr),
-            "Sigma_5_yy": np.broadcast_to(Sigma_5_yy, _rrrrrr),
-            "Sigma_5_zz": np.broadcast_to(Sigma_5_zz, _rrrrrr),
-            "b_r0_x": np.broadcast_to(b_r0_x, _rrrrrr),
-            "b_r0_y": np.broadcast_to(b_r0_y, _rrrrrr),
-            "b_r0_z": np.broadcast_to(b_r0_z, _rrrrrr),
-            "g_r0_x": np.broadcast_to(g_r0_x, _rrrrrr),
-            "g_r0_y": np.broadcast_to(g_r0_y, _rrrrrr),
-            "g_r0_z": np.broadcast_to(g_r0_z, _rrrrrr),
-            "h_1_x": np.broadcast_to(h_1_x, _rrrrrr),
-            "h_1_y": np.broadcast_to(h_1_y, _rrrrrr),
-            "h_1_z": np.broadcast_to(h_1_z, _rrrrrr),
-            "h_2_x": np.broadcast_to(h_2_x, _rrrrrr),
-            "h_2_y": np.broadcast_to(h_2_y, _rrrrrr),
-            "h_2_z": np.broadcast_to(h_2_z, _rrrrrr),
-            "h_3_x": np.broadcast_to(h_3_x, _rrrrrr),
-            "h_3_y": np.broadcast_to(h_3_y, _rrrrrr),
-            "h_3_z": np.broadcast_to(h_3_z, _rrrrrr),
-            "h_4_x": np.broadcast_to(h_4_x, _rrrrrr),
-            "h_4_y": np.broadcast_to(h_4_y, _rrrrrr),
-            "h_4_z": np.broadcast_to(h_4_z, _rrrrrr),
-            "h_5_x": np.broadcast_to(h_5_x, _rrrrrr),
-            "h_5_y": np.broadcast_to(h_5_y, _rrrrrr),
-            "h_5_z": np.broadcast_to(h_5_z, _rrrrrr),
-            "hc_3_x": np.broadcast_to(hc_3_x, _rrrrrr),
-            "inv_size": np.broadcast_to(inv_size, _rrrrrr),
-            "rrrrrr_base_frame_xx": np.broadcast_to(rrrrrr_base_frame_xx, _rrrrrr),
-            "rrrrrr_base_frame_xy": np.broadcast_to(rrrrrr_base_frame_xy, _rrrrrr),
-            "rrrrrr_base_frame_xz": np.broadcast_to(rrrrrr_base_frame_xz, _rrrrrr),
-            "rrrrrr_base_frame_yx": np.broadcast_to(rrrrrr_base_frame_yx, _rrrrrr),
-            "rrrrrr_base_frame_yy": np.broadcast_to(rrrrrr_base_frame_yy, _rrrrrr),
-            "rrrrrr_base_frame_yz": np.broadcast_to(rrrrrr_base_frame_yz, _rrrrrr),
-            "rrrrrr_base_frame_zx": np.broadcast_to(rrrrrr_base_frame_zx, _rrrrrr),
-            "rrrrrr_base_frame_zy": np.broadcast_to(rrrrrr_base_frame_zy, _rrrrrr),
-            "rrrrrr_base_frame_zz": np.broadcast_to(rrrrrr_base_frame_zz, _rrrrrr),
-            "rrrrrr_base_point_x": np.broadcast_to(rrrrrr_base_point_x, _rrrrrr),
-            "rrrrrr_base_point_y": np.broadcast_to(rrrrrr_base_point_y, _rrrrrr),
-            "rrrrrr_base_point_z": np.broadcast_to(rrrrrr_base_point_z, _rrrrrr),
-            "rrrrrr_joint2_offset_x": np.broadcast_to(rrrrrr_joint2_offset_x, _rrrrrr),
-            "rrrrrr_joint3_offset_x": np.broadcast_to(rrrrrr_joint3_offset_x, _rrrrrr),
-            "rrrrrr_joint4_offset_x": np.broadcast_to(rrrrrr_joint4_offset_x, _rrrrrr),
-            "rrrrrr_joint5_offset_x": np.broadcast_to(rrrrrr_joint5_offset_x, _rrrrrr),
-            "rrrrrr_link1_mass": np.broadcast_to(rrrrrr_link1_mass, _rrrrrr),
-            "rrrrrr_link2_mass": np.broadcast_to(rrrrrr_link2_mass, _rrrrrr),
-            "rrrrrr_link3_mass": np.broadcast_to(rrrrrr_link3_mass, _rrrrrr),
-            "rrrrrr_link4_mass": np.broadcast_to(rrrrrr_link4_mass, _rrrrrr),
-            "rrrrrr_link5_mass": np.broadcast_to(rrrrrr_link5_mass, _rrrrrr),
-            "rrrrrr_platform_joint_axis_platform_x": np.broadcast_to(rrrrrr_platform_joint_axis_platform_x, _rrrrrr),
-            "rrrrrr_platform_joint_axis_platform_y": np.broadcast_to(rrrrrr_platform_joint_axis_platform_y, _rrrrrr),
-            "rrrrrr_platform_joint_axis_platform_z": np.broadcast_to(rrrrrr_platform_joint_axis_platform_z, _rrrrrr),
-            "rrrrrr_platform_joint_offset_x": np.broadcast_to(rrrrrr_platform_joint_offset_x, _rrrrrr),
-            "rrrrrr_platform_point_x": np.broadcast_to(rrrrrr_platform_point_x, _rrrrrr),
-            "rrrrrr_platform_point_y": np.broadcast_to(rrrrrr_platform_point_y, _rrrrrr),
-            "rrrrrr_platform_point_z": np.broadcast_to(rrrrrr_platform_point_z, _rrrrrr),
-            "size": np.broadcast_to(size, _rrrrrr),
-            "size_t": np.broadcast_to(size_t, _rrrrrr),
-        },
-    }
-    return shared, legs
 
 
-class _Part:
-    """A piece of straight-line code: which prepared values it reads, where its results go."""
-
-    def __init__(self, function, names, passed, targets):
-        self.function, self.names, self.passed, self.targets = function, names, passed, targets
+_FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
 
 
-class _LegPart:
-    """A piece of straight-line code run once per leg of a type."""
-
-    def __init__(self, function, leg, names, leg_names, inputs, passed, sums, targets):
-        self.function, self.leg, self.names, self.leg_names = function, leg, names, leg_names
-        self.inputs, self.passed, self.sums, self.targets = inputs, passed, sums, targets
-
-
-class _Plan:
-    """A computation: before the legs, over the legs of each type, after the legs."""
-
-    def __init__(self, inputs, arrays, before, legs, after=None):
-        self.inputs, self.arrays = inputs, arrays
-        self.before, self.legs, self.after = before, legs, after
-
-    def constants(self, p):
-        """Prepared values in the order of the code: floats per leg, and arrays over legs."""
-        if self not in p._cache:
-            shared, legs = p._prepared()
-            tables = []
-            for part in self.legs:
-                columns = [legs[part.leg][n] for n in part.leg_names]
-                rows = [tuple(row) for row in np.array(columns).T.tolist()]
-                count = len(_LEGS[part.leg])
-                tables.append((tuple(shared[n] for n in part.names), rows or [()] * count,
-                               tuple(c[:, None] for c in columns)))
-            before = tuple(shared[n] for n in self.before.names)
-            after = tuple(shared[n] for n in self.after.names) if self.after else ()
-            p._cache[self] = before, tables, after
-        return p._cache[self]
+def _constants(p, name):
+    """Prepared values of a function: floats, and those of each loop over legs for both modes."""
+    if name not in p._cache:
+        shared, loops = p._prepared()[name]
+        rows, columns = [], []
+        for count, values in loops:
+            table = [np.broadcast_to(v, count) for v in values]
+            rows.append([(leg, tuple(float(v[leg]) for v in table)) for leg in range(count)])
+            columns.append([(slice(0, count), tuple(v[:, None] for v in table))])
+        p._cache[name] = tuple(map(float, shared)), rows, columns
+    return p._cache[name]
 
 
 def _sqrt(x):
@@ -1041,120 +1101,502 @@ def _sqrt(x):
 
 
 class _Floats:
-    """Functions on Python floats: the way for single states."""
+    """Functions of a state after another, in Python floats: the way for few states."""
 
     sqrt = staticmethod(_sqrt)
     sin = staticmethod(lambda x: float(np.sin(x)))
     cos = staticmethod(lambda x: float(np.cos(x)))
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
     least = staticmethod(lambda x, y: float(np.minimum(x, y)))
+    every = staticmethod(lambda good: good)
+
+    def __init__(self, p, states):
+        self.p, self.states = p, states
+
+    def constants(self, name):
+        """Shared values, and (leg, its values) for every leg of each loop."""
+        return _constants(self.p, name)[:2]
+
+    def zeros(self, size):
+        return [0.0] * size
+
+    def added(self, sums, leg, terms):
+        """Sums over the legs so far."""
+        return [a + b for a, b in zip(sums, terms)]
+
+    def run(self, function, shapes, *vectors):
+        """Arrays (*shape, states) of a function; NaN where the state is impossible."""
+        found = [np.full((self.states, math.prod(shape)), np.nan) for shape in shapes]
+        rows = [v.T.tolist() for v in vectors]
+        for k in range(self.states):
+            try:
+                ok, arrays = function(self, *(row[k] for row in rows))
+            except (ZeroDivisionError, OverflowError):
+                continue
+            if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
+                for a, array in zip(found, arrays):
+                    a[k] = array
+        return [a.T.reshape(*shape, self.states) for a, shape in zip(found, shapes)]
 
 
 class _Arrays:
-    """Functions on arrays over states: the way for batches."""
+    """Functions of many states at once: arrays (states,), and (legs, states)."""
 
     sqrt, sin, cos, atan2, least = np.sqrt, np.sin, np.cos, np.arctan2, np.minimum
 
+    def __init__(self, p, states):
+        self.p, self.states = p, states
 
-_FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
+    def constants(self, name):
+        """Shared values, and (all legs, their values) once for each loop."""
+        shared, _, columns = _constants(self.p, name)
+        return shared, columns
+
+    def zeros(self, size):
+        return np.zeros((size, self.states))
+
+    def every(self, good):
+        """Whether it holds for all legs."""
+        return np.logical_and.reduce(good, axis=0)
+
+    def added(self, sums, legs, terms):
+        """Sums over the legs, all at once."""
+        shape = (legs.stop, self.states)
+        return [np.add.reduce(np.broadcast_to(t, shape), axis=0) for t in terms]
+
+    def run(self, function, shapes, *vectors):
+        """Arrays (*shape, states) of a function; NaN where the state is impossible."""
+        ok, arrays = function(self, *vectors)
+        for a in arrays:
+            ok = ok & np.isfinite(a).all(axis=0)
+        if not np.all(ok):
+            for a in arrays:
+                a[:, ~ok] = np.nan
+        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
 
 
-def _evaluate(plan, p, q0, **vectors):
-    """Arrays of a plan at the vectors that it reads."""
-    p = _given(p)
-    q0 = _guess(q0)
-    if "q" in plan.inputs:
-        vectors["q"] = _closed(vectors["X"], q0, p)
-    lead = _lead(**vectors)
-    chosen = [np.broadcast_to(vectors[k], lead + vectors[k].shape[-1:]) for k in plan.inputs]
-    return _run(plan, p, *chosen)
+class _Judged(_Arrays):
+    """The same, and why a state is impossible."""
+
+    def __init__(self, p, states):
+        super().__init__(p, states)
+        self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
+
+    def run(self, function, shapes, *vectors):
+        """Arrays (*shape, states) of a function, also where they are nonsense."""
+        (valid, reached, clear), arrays = function(self, *vectors)
+        for code, good in ((3, valid), (1, reached), (2, clear)):
+            self.failed[code] |= ~np.broadcast_to(good, self.states)
+        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+
+    def closed(self, q):
+        """q, noting where the iteration has not converged."""
+        self.failed[4] |= np.isnan(q).any(axis=0)
+        return q
+
+    def status(self, possible):
+        """Status codes; 3 where all is well but some input or result is not finite."""
+        return np.select(list(self.failed.values()), list(self.failed), np.where(possible, 0, 3))
 
 
-def _run(plan, p, *vectors):
-    """Arrays of a plan for one state or many; NaN where the state is impossible."""
-    lead = np.broadcast_shapes(*(v.shape[:-1] for v in vectors))
-    count = int(np.prod(lead, dtype=int))
-    flat = [np.broadcast_to(v, lead + v.shape[-1:]).reshape(count, v.shape[-1]) for v in vectors]
-    outputs = [np.zeros((count, int(np.prod(shape, dtype=int)))) for _, shape in plan.arrays]
-    possible = np.ones(count, dtype=bool)
+def _mode(p, states):
+    """The faster way for so many states."""
+    return _Floats(p, states) if 0 < states <= _FEW else _Arrays(p, states)
+
+
+def _call(function, steps, p, *arguments, mode=_mode):
+    """What the steps give at arguments (name, value, shape of a state, default, rule)."""
+    given = [_argument(function, *a) for a in arguments]
+    shapes = [a[2] for a in arguments]
+    leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
+    lead, p = _lead(leads), _given(p)
+    read = [a[4:] != ("unused",) for a in arguments]
+    if lead or mode is _Judged:
+        results = _many(steps, p, lead, given, shapes, read, mode)
+    else:
+        results = _one(steps, p, given, shapes, read)
+    return results[0] if len(results) == 1 else tuple(results)
+
+
+def _one(steps, p, given, shapes, read):
+    """Results at a single state."""
+    states = [v.reshape(*shape, 1) for v, shape in zip(given, shapes)]
     with np.errstate(all="ignore"):
-        if count <= _FEW:
-            rows = [v.tolist() for v in flat]
-            for i in range(count):
-                possible[i] = _run_one(plan, p, [r[i] for r in rows], [o[i] for o in outputs])
-        else:
-            for i in range(0, count, _BLOCK):
-                block = slice(i, i + _BLOCK)
-                possible[block] = _run_block(
-                    plan, p, [np.ascontiguousarray(v[block].T) for v in flat],
-                    [o[block] for o in outputs])
-        for v in (*flat, *outputs):
-            possible &= np.isfinite(v).all(axis=1)
-    for o in outputs:
-        o[~possible] = np.nan
-    return [o.reshape(lead + shape) for o, (_, shape) in zip(outputs, plan.arrays)]
+        results = [a[..., 0] for a in steps(_Floats(p, 1), *states)]
+    if all(all(map(math.isfinite, v.ravel().tolist())) for v in (*compress(given, read), *results)):
+        return [np.array(a)[()] for a in results]
+    return [np.full(a.shape, np.nan)[()] for a in results]
 
 
-def _run_one(plan, p, vectors, outputs):
-    """One state with Python floats; False if it is impossible."""
-    constants, tables, after = plan.constants(p)
-    try:
-        ok, shared, stores = plan.before.function(constants, *vectors, _Floats)
-        for (array, index), value in zip(plan.before.targets, stores):
-            outputs[array][index] = value
-        sums = []
-        for part, (c, rows, _) in zip(plan.legs, tables):
-            s = [shared[k] for k in part.passed]
-            totals = [0.0] * part.sums
-            for leg, k in enumerate(rows):
-                x = [vectors[plan.inputs.index(v)][index[leg]] for v, index in part.inputs]
-                good, terms, stores = part.function(c, k, x, s, _Floats)
-                ok = ok and good
-                totals = [a + b for a, b in zip(totals, terms)]
-                for (array, index), value in zip(part.targets, stores):
-                    outputs[array][index[leg]] = value
-            sums += totals
-        if plan.after:
-            s = [shared[k] for k in plan.after.passed]
-            good, stores = plan.after.function(after, s, sums, _Floats)
-            ok = ok and good
-            for (array, index), value in zip(plan.after.targets, stores):
-                outputs[array][index] = value
-    except (ZeroDivisionError, OverflowError):
-        return False
-    return ok
+def _many(steps, p, lead, given, shapes, read, mode):
+    """Results at many states, block by block."""
+    count = math.prod(lead)
+    flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
+    possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
+    with np.errstate(all="ignore"):
+        for first in range(0, max(count, 1), _BLOCK):
+            block = slice(first, min(first + _BLOCK, count))
+            states = [_states_last(v[block]) for v in flat]
+            m, good = mode(p, block.stop - first), possible[block]
+            found = steps(m, *states)
+            if not outputs:
+                outputs = [np.empty((count, *a.shape[:-1])) for a in found]
+            _all_finite(compress(states, read), good)
+            if mode is _Judged:
+                m.failed[3] |= ~good
+            _all_finite(found, good)
+            if mode is _Judged:
+                status[block] = m.status(good)
+                good[:] = status[block] == 0
+            for output, a in zip(outputs, found):
+                output[block] = a.transpose(a.ndim - 1, *range(a.ndim - 1))
+    for output in outputs:
+        output[~possible] = np.nan
+    outputs += [status] if mode is _Judged else []
+    return [a.reshape(lead + a.shape[1:])[()] for a in outputs]
 
 
-def _run_block(plan, p, vectors, outputs):
-    """Many states at once, arrays (states,) and (legs, states); which are possible."""
-    constants, tables, after = plan.constants(p)
-    ok, shared, stores = plan.before.function(constants, *vectors, _Arrays)
-    for (array, index), value in zip(plan.before.targets, stores):
-        outputs[array][:, index] = value
-    sums = []
-    for part, (c, _, columns) in zip(plan.legs, tables):
-        legs, states = len(_LEGS[part.leg]), outputs[0].shape[0]
-        x = [vectors[plan.inputs.index(v)][list(index)] for v, index in part.inputs]
-        s = [shared[k] for k in part.passed]
-        good, terms, stores = part.function(c, columns, x, s, _Arrays)
-        ok = ok & np.all(good, axis=0)
-        sums += [np.sum(np.broadcast_to(t, (legs, states)), axis=0) for t in terms]
-        for (array, index), value in zip(part.targets, stores):
-            outputs[array][:, list(index)] = np.broadcast_to(value, (legs, states)).T
-    if plan.after:
-        good, stores = plan.after.function(after, [shared[k] for k in plan.after.passed], sums, _Arrays)
-        ok = ok & good
-        for (array, index), value in zip(plan.after.targets, stores):
-            outputs[array][:, index] = value
-    return ok
+def _states_last(a):
+    """A contiguous array (*shape, states) of one (states, *shape)."""
+    return np.ascontiguousarray(a.transpose(*range(1, a.ndim), 0))
+
+
+def _all_finite(arrays, good):
+    """Clear the flags of states in which some entry is not finite."""
+    for a in arrays:
+        good &= np.isfinite(a).all(axis=tuple(range(a.ndim - 1)))
+
+
+def _with_forces(a, amounts, directions, legs):
+    """a, to whose row of a leg its directions times amounts are added."""
+    result = np.array(a)
+    for k, leg in enumerate(legs):
+        result[leg] += amounts[k] * directions[k]
+    return result
+
+
+def _wrapped(a, places):
+    """a, some entries turned into (-pi, pi]."""
+    result = np.array(a)
+    result[places] = np.pi - np.remainder(np.pi - a[places], 2.0 * np.pi)
+    return result
+
+
+def _rows_divided(a, b, places):
+    """a, some rows divided by b."""
+    result = np.array(a)
+    result[places] /= b
+    return result
+
+
+def _chosen_length(a, b):
+    """b where it is positive; else the first of a, or where that is nothing the second."""
+    return np.where(b > 0.0, b, np.where(a[0] > 1e-09 * a[1], a[0], a[1]))
+
+
+def _scaled(q):
+    """Quaternions with largest entry 1, so that squares of tiny ones keep their digits."""
+    size = np.max(np.abs(q), axis=0)
+    return q / np.where(np.isfinite(np.sum(q * q, axis=0)), size, np.nan)
+
+
+def _unit(q):
+    """Quaternions of length 1."""
+    q = _scaled(q)
+    return q / np.sqrt(np.sum(q * q, axis=0))
+
+
+def _rotation_of_quaternion(q):
+    """Rotation matrices (3, 3, states)."""
+    x, y, z, w = _scaled(q)
+    xx, yy, zz, ww = x * x, y * y, z * z, w * w
+    return np.array((
+        (xx + ww - (yy + zz), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+        (2 * (x * y + w * z), yy + ww - (xx + zz), 2 * (y * z - w * x)),
+        (2 * (x * z - w * y), 2 * (y * z + w * x), zz + ww - (xx + yy)),
+    )) / (xx + yy + zz + ww)
+
+
+def _quaternion_of_rotation(R):
+    """x, y, z, w of rotation matrices."""
+    # each candidate is four times the quaternion times one of its entries; take the longest
+    s = R[2, 1] + R[1, 2], R[0, 2] + R[2, 0], R[1, 0] + R[0, 1]
+    a = R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]
+    x, y, z = R[0, 0], R[1, 1], R[2, 2]
+    candidates = np.array((
+        (1 + x - y - z, s[2], s[1], a[0]),
+        (s[2], 1 - x + y - z, s[0], a[1]),
+        (s[1], s[0], 1 - x - y + z, a[2]),
+        (a[0], a[1], a[2], 1 + x + y + z),
+    ))
+    best = np.argmax(np.sum(candidates * candidates, axis=1), axis=0)
+    return _unit(candidates[best, :, np.arange(len(best))].T)
+
+
+def _quaternion_of_rpy(a):
+    """x, y, z, w of roll, pitch, yaw about the fixed axes x, y, z."""
+    (cx, cy, cz), (sx, sy, sz) = np.cos(0.5 * a), np.sin(0.5 * a)
+    return np.array((
+        sx * cy * cz - cx * sy * sz, cx * sy * cz + sx * cy * sz,
+        cx * cy * sz - sx * sy * cz, cx * cy * cz + sx * sy * sz,
+    ))
+
+
+def _quaternion_rate(q, w):
+    """Rate of a quaternion at an angular velocity."""
+    vector = 0.5 * (q[3] * w + np.cross(w, q[:3], axis=0))
+    return np.concatenate((vector, -0.5 * np.sum(w * q[:3], axis=0)[None]))
+
+
+def _turned(q, b):
+    """Quaternions turned by rotation vectors b."""
+    angle, q = np.sqrt(np.sum(b * b, axis=0)), _unit(q)
+    v, c = b * (0.5 * np.sinc(angle / (2.0 * np.pi))), np.cos(0.5 * angle)
+    vector = c * q[:3] + q[3] * v + np.cross(v, q[:3], axis=0)
+    return np.concatenate((vector, (c * q[3] - np.sum(v * q[:3], axis=0))[None]))
+
+
+def _moved(X, step):
+    """X moved by small displacements."""
+    if _Q is None:
+        return X + step
+    q = _turned(X[_Q : _Q + 4], step[_Q : _Q + 3])
+    return np.concatenate((X[:_Q] + step[:_Q], q, X[_Q + 4 :] + step[_Q + 3 :]))
+
+
+_PIVOT = 1.8e-12  # a pivot below this fraction of its row counts as zero (epsilon^(3/4))
+_CLEARLY = 2.0  # rows change places only for a pivot that is larger by this factor
+
+
+def _solve(a, b):
+    """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
+    n, states = b.shape
+    if 0 < states <= _FEW:
+        matrices, rights = np.moveaxis(a, -1, 0).tolist(), b.T.tolist()
+        return np.array([_solve_one(*each) for each in zip(matrices, rights)]).T.reshape(n, states)
+    size = np.max(np.abs(a), axis=1, initial=0.0)
+    good = np.all((size > 0.0) & np.isfinite(size), axis=0)
+    rows = np.concatenate((a, b[:, None]), axis=1)
+    rows /= size[:, None]
+    for k in range(n):
+        column = np.abs(rows[k:, k])
+        best = np.argmax(column, axis=0)
+        at = np.flatnonzero(best)
+        at = at[column[best[at], at] > _CLEARLY * column[0, at]]
+        if at.size:
+            other = k + best[at]
+            upper, lower = rows[k, k:, at], rows[other, k:, at]
+            rows[k, k:, at], rows[other, k:, at] = lower, upper
+        pivot = rows[k, k]
+        good &= np.abs(pivot) > _PIVOT
+        factor = rows[k + 1 :, k] / pivot
+        rows[k + 1 :, k + 1 :] -= factor[:, None] * rows[k, k + 1 :]
+    x = np.empty((n, states))
+    for k in reversed(range(n)):
+        known = np.einsum("js,js->s", rows[k, k + 1 : n], x[k + 1 :])
+        x[k] = (rows[k, n] - known) / rows[k, k]
+    x[:, ~(good & np.isfinite(x).all(axis=0))] = np.nan
+    return x
+
+
+def _solve_one(a, b):
+    """The same for one system of nested lists."""
+    n = len(b)
+    failure = [np.nan] * n
+    for i, row in enumerate(a):
+        size = max(map(abs, row), default=0.0)
+        if not 0.0 < size < np.inf:
+            return failure
+        a[i] = [v / size for v in row] + [b[i] / size]
+    for k in range(n):
+        best = max(range(k, n), key=lambda i: abs(a[i][k]))
+        if abs(a[best][k]) > _CLEARLY * abs(a[k][k]):
+            a[k], a[best] = a[best], a[k]
+        if not abs(a[k][k]) > _PIVOT:
+            return failure
+        head = a[k]
+        for i in range(k + 1, n):
+            factor = a[i][k] / head[k]
+            a[i] = [v - factor * h for v, h in zip(a[i], head)]
+    x = [0.0] * n
+    for k in reversed(range(n)):
+        x[k] = (a[k][n] - sum(a[k][j] * x[j] for j in range(k + 1, n))) / a[k][k]
+    return x if all(map(math.isfinite, x)) else failure
+
+
+def _matrices(a, *others):
+    """Matrices with the states first, zero where something is not finite; and where that is."""
+    bad = ~np.isfinite(a).all(axis=(0, 1))
+    for b in others:
+        bad |= ~np.isfinite(b).all(axis=0)
+    a = np.moveaxis(a, -1, 0)
+    return (np.where(bad[:, None, None], 0.0, a) if bad.any() else a), bad
+
+
+def _null_basis(a, rank):
+    """Orthonormal columns x with a x = 0, for a of so high a rank."""
+    a, bad = _matrices(a)
+    _, _, vt = np.linalg.svd(a)
+    basis = vt[:, rank:].transpose(2, 1, 0).copy()
+    basis[..., bad] = np.nan
+    return basis
+
+
+def _singular_values(a):
+    """Singular values, in descending order."""
+    a, bad = _matrices(a)
+    values = np.linalg.svd(a, compute_uv=False).T.copy()
+    values[:, bad] = np.nan
+    return values
+
+
+def _closed(m, X, q0):
+    """Displacements q (NJ, states) that close the loops at X, by Newton from q0.
+
+    NaN where the iteration does not converge in 60 steps of at most 0.5 each, or not on the
+    assembly branch of home.
+    """
+    q = np.array(np.broadcast_to(q0, (NJ, m.states)))
+    for joint, place in _GIVEN:
+        q[joint] = X[place]
+    for closure in _CLOSURES:
+        _close_legs(m.p, X, q, *closure)
+    return m.closed(q) if isinstance(m, _Judged) else q
+
+
+def _close_legs(p, X, q, run, inputs, shapes, joints, turning, rows, signs):
+    """Newton's iteration for the legs of a type, all states at once; q is changed.
+
+    What converges off home's branch is NaN: the determinant of the Jacobian's rows, which keeps
+    its sign as long as no leg becomes singular, has not home's sign there.
+    """
+    legs, unknowns = joints.shape
+    at = np.flatnonzero(np.isfinite(X).all(axis=0) & np.isfinite(q).all(axis=0))
+    lost = np.ones(q.shape[1], dtype=bool)
+    for _ in range(60):
+        if not at.size:
+            break
+        chosen = [{"X": X, "q": q}[name][:, at] for name in inputs]
+        gap, jacobian = _mode(p, at.size).run(run, shapes, *chosen)
+        jacobian = np.moveaxis(jacobian.reshape(legs, -1, unknowns, at.size), 0, 2)
+        step = _newton_step(jacobian, np.moveaxis(gap, 0, 1))
+        largest = np.max(np.abs(step), axis=(0, 1))
+        step *= np.minimum(1.0, 0.5 / largest)
+        q[joints[:, :, None], at] += np.moveaxis(step, 1, 0)
+        steady = largest <= 1e-11
+        if steady.any():
+            lost[at[steady]] = False
+            if rows:
+                square = np.moveaxis(jacobian[rows][..., steady], (2, 3), (1, 0))
+                side = np.linalg.slogdet(square)[0] * signs
+                lost[at[steady]] = ~(side > 0.0).all(axis=1)
+        at = at[largest > 1e-11]
+    q[turning] = np.pi - np.remainder(np.pi - q[turning], 2.0 * np.pi)
+    q[:, lost] = np.nan
+
+
+def _newton_step(jacobian, gap):
+    """Solution of jacobian step = gap per leg, least squares where there are fewer unknowns."""
+    rows, unknowns, *batch = jacobian.shape
+    jacobian, gap = jacobian.reshape(rows, unknowns, -1), gap.reshape(rows, -1)
+    if rows == unknowns:
+        return _solve(jacobian, gap).reshape(unknowns, *batch)
+    return _least_squares(jacobian, gap, 1e-15).reshape(unknowns, *batch)
+
+
+def _least_squares(a, b, least):
+    """x of least norm with the least a x - b; singular values below a fraction count as zero."""
+    a, bad = _matrices(a, b)
+    x = (np.linalg.pinv(a, rcond=least) @ b.T[..., None])[..., 0].T
+    x[:, bad] = np.nan
+    return x
+
+
+def _search(m, residual, slope, X, given, guess, halving):
+    """The pose at which residual(mode, X, *given) vanishes, by Gauss-Newton from X.
+
+    slope(mode, X, *guess) is its derivative, transposed, negative.  Steps are halved until the
+    residual is smaller, or taken as they are.  NaN where no pose is found.
+    """
+    X = np.array(X)
+    gap = np.array(_at(m, residual, X, given, slice(None)))
+    size = np.max(np.abs(gap), axis=0, initial=0.0)
+    open_ = np.isfinite(size) & np.isfinite(X).all(axis=0)
+    size[~open_] = np.inf
+    for _ in range(50):
+        at = np.flatnonzero(open_ & (size >= 1e-14))
+        if not at.size:
+            break
+        a = _at(m, slope, X, guess, at)
+        step = _least_squares(np.swapaxes(a, 0, 1), gap[:, at], 1e-10)
+        stopped = ~np.isfinite(step).all(axis=0)
+        size[at[stopped]] = np.inf
+        open_[at[stopped]] = False
+        at, step = at[~stopped], step[:, ~stopped]
+        for _ in range(12 if halving else 1):
+            trial = np.array(X)
+            trial[:, at] = _moved(X[:, at], step)
+            trial_gap = _at(m, residual, trial, given, at)
+            trial_size = np.max(np.abs(trial_gap), axis=0, initial=0.0)
+            good = trial_size < size[at] if halving else np.ones(at.size, dtype=bool)
+            taken = at[good]
+            X[:, taken], gap[:, taken], size[taken] = trial[:, taken], trial_gap[:, good], trial_size[good]
+            if not halving:
+                lost = ~np.isfinite(size[taken])
+                size[taken[lost]] = np.inf
+                open_[taken[lost | (np.max(np.abs(step), axis=0) < 0.1 * 1e-14)]] = False
+            at, step = at[~good], 0.5 * step[:, ~good]
+            if not at.size:
+                break
+        open_[at] = False
+    X[:, ~(size < 1e-09)] = np.nan
+    return X
+
+
+def _at(m, function, X, given, at):
+    """The array of a function at some of the states."""
+    X, given = X[:, at], [v[..., at] for v in given]
+    (found,) = function(_mode(m.p, X.shape[1]), X, *given)
+    return found
+
+
+def _rotations(R, n, nearest):
+    """Rotation matrices (..., n, n): R as it is, or the nearest; those with NaN stay."""
+    R = np.array(_numbers("pose", "R", R))
+    if R.shape[-2:] != (n, n):
+        raise ValueError(f"pose: R has shape {R.shape}, expected (..., {n}, {n})")
+    known = np.isfinite(R).all(axis=(-1, -2))
+    if nearest:
+        R[known] = _nearest(R[known])
+    if not np.all(_are_rotations(R[known])):
+        raise ValueError(
+            "pose: R is no rotation matrix, with orthonormal rows to 1e-06 and determinant +1;"
+            " nearest=True takes the nearest one")
+    return R
+
+
+def _nearest(R):
+    """The nearest rotations (k, n, n); ValueError where several are."""
+    largest = np.max(np.abs(R), axis=(1, 2), keepdims=True)
+    u, s, vt = np.linalg.svd(R / np.where(largest > 0.0, largest, 1.0))
+    sign = np.sign(np.linalg.det(u @ vt))
+    if np.any(s[:, -2] + sign * s[:, -1] <= 1e-06 * s[:, 0]):
+        raise ValueError("pose: R has no single nearest rotation")
+    u[:, :, -1] *= sign[:, None]
+    return u @ vt
 
 
 # dynamics: 10749 mul, 8193 add, 30 div, 30 sqrt, 60 trig
-def _dynamics_before(c, X, V, q, f):
+def _run_dynamics(m, X, V, q):
+    sqrt = m.sqrt
+    sin = m.sin
+    cos = m.cos
+    shared, legs = m.constants("dynamics")
     (
     J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
         Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
-    ) = c
+        m_star,
+    ) = shared
     X_3 = X[3]
     X_4 = X[4]
     X_5 = X[5]
@@ -1165,6 +1607,11 @@ def _dynamics_before(c, X, V, q, f):
     V_3 = V[3]
     V_4 = V[4]
     V_5 = V[5]
+    q_1 = q[1]
+    q_2 = q[2]
+    q_3 = q[3]
+    q_4 = q[4]
+    q_5 = q[5]
     # X: named entries
     quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6
     quaternion_scale = 2.0/quaternion_norm2
@@ -1196,6 +1643,11 @@ def _dynamics_before(c, X, V, q, f):
     omega_x = V_3
     omega_y = V_4
     omega_z = V_5
+    ok = True
+    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    out_M = m.zeros(36)
+    out_Z = m.zeros(6)
+    out_H = m.zeros(36)
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -1239,1525 +1691,1563 @@ def _dynamics_before(c, X, V, q, f):
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
-    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    return (
-    ok, (R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y, t_dot_z, omega_x,
-        omega_y, omega_z, h_star_in_base_x, h_star_in_base_y, h_star_in_base_z, J_star_t_8,
-        J_star_t_9, J_star_t_10, J_star_t_12, J_star_t_13, J_star_t_15, Z_p_x, Z_p_y, Z_p_z,
-        Z_q_in_base_x, Z_q_in_base_y, Z_q_in_base_z,), (),
-    )
-
-
-def _dynamics_rrrrrr(c, k, x, s, f):
-    sqrt = f.sqrt
-    sin = f.sin
-    cos = f.cos
-    (
-    J_1_xx, J_2_xx, J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_2_zz, J_3_xx, J_3_xy, J_3_xz, J_3_yy,
-        J_3_yz, J_3_zz, J_4_xx, J_4_xy, J_4_xz, J_4_yy, J_4_yz, J_5_xx, J_5_xy, J_5_xz, J_5_yy,
-        J_5_yz, J_5_zz, Jc_2_t, Jc_3_t_2, Jc_3_t_3, Jc_4_xx, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz,
-        Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, Sigma_4_xx, Sigma_4_yy, Sigma_4_zz, Sigma_5_xx,
-        Sigma_5_yy, Sigma_5_zz, g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x,
-        h_3_y, h_3_z, h_4_x, h_4_y, h_4_z, h_5_x, h_5_y, h_5_z, hc_3_x, rrrrrr_base_frame_xx,
-        rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx, rrrrrr_base_frame_yy,
-        rrrrrr_base_frame_yz, rrrrrr_base_frame_zx, rrrrrr_base_frame_zy, rrrrrr_base_frame_zz,
-        rrrrrr_joint2_offset_x, rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x,
-        rrrrrr_joint5_offset_x, rrrrrr_link3_mass, rrrrrr_link4_mass,
-        rrrrrr_platform_joint_axis_platform_x, rrrrrr_platform_joint_axis_platform_y,
-        rrrrrr_platform_joint_axis_platform_z, rrrrrr_platform_joint_offset_x,
-        rrrrrr_platform_point_x, rrrrrr_platform_point_y, rrrrrr_platform_point_z, size, size_t,
-    ) = k
-    q_1, q_2, q_3, q_4, q_5 = x
-    (
-    R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y, t_dot_z, omega_x,
-        omega_y, omega_z,
-    ) = s
-    # (rrrrrr-K10) cosine of the angle of joint 5 from its reference direction
-    c_5_t = sin(q_5)
-    # (rrrrrr-K11) sine of the angle of joint 5 from its reference direction
-    s_5 = cos(q_5)
-    # (rrrrrr-V2) from joint 4 to the connection point, along the links
-    r_4_t = c_5_t*rrrrrr_platform_joint_offset_x
-    r_4_z = rrrrrr_joint5_offset_x + rrrrrr_platform_joint_offset_x*s_5
-    # (rrrrrr-K8) cosine of the angle of joint 4 from its reference direction
-    c_4_t = sin(q_4)
-    # (rrrrrr-K9) sine of the angle of joint 4 from its reference direction
-    s_4 = cos(q_4)
-    # (rrrrrr-V2) from joint 4 to the connection point, along the links
-    r_4_t_2 = r_4_t*s_4
-    r_4_t_3 = c_4_t*r_4_t
-    # (rrrrrr-V3) from joint 3 to the connection point, along the links
-    r_3_x = r_4_z + rrrrrr_joint4_offset_x
-    # (rrrrrr-K6) cosine of the angle of joint 3 from its reference direction
-    c_3 = cos(q_3)
-    # (rrrrrr-K7) sine of the angle of joint 3 from its reference direction
-    s_3 = sin(q_3)
-    # (rrrrrr-V3) from joint 3 to the connection point, along the links
-    r_3_r0_y = c_3*r_4_t_2 + r_3_x*s_3
-    # (rrrrrr-V4) from joint 2 to the connection point, along the links
-    r_2_x = rrrrrr_joint3_offset_x + c_3*r_3_x - r_4_t_2*s_3
-    # (rrrrrr-K4) cosine of the angle of joint 2 from its reference direction
-    c_2_t = sin(q_2)
-    # (rrrrrr-K5) sine of the angle of joint 2 from its reference direction
-    s_2 = cos(q_2)
-    # (rrrrrr-V4) from joint 2 to the connection point, along the links
-    r_2_r0_x = -c_2_t*r_2_x - r_3_r0_y*s_2
-    # (rrrrrr-V5) from joint 1 to the connection point, along the links
-    r_1_z = rrrrrr_joint2_offset_x + r_2_x*s_2 - c_2_t*r_3_r0_y
-    # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-    e_1_r2_x = c_3*s_2 - c_2_t*s_3
-    e_1_r2_y = -c_2_t*c_3 - s_2*s_3
-    v_1_t = c_4_t*e_1_r2_y
-    v_1_t_2 = e_1_r2_y*s_4
-    e_1_r6_x = c_5_t*v_1_t_2 + e_1_r2_x*s_5
-    e_1_r6_y = s_5*v_1_t_2 - c_5_t*e_1_r2_x
-    # (rrrrrr-V5) from joint 1 to the connection point, along the links
-    r_1_r1_x = r_1_z*s_2 - c_2_t*r_2_r0_x
-    r_1_r1_y = -c_2_t*r_1_z - r_2_r0_x*s_2
-    r_1_r2_x = c_3*r_1_r1_x + r_1_r1_y*s_3
-    r_1_r2_y = c_3*r_1_r1_y - r_1_r1_x*s_3
-    r_1_t = r_4_t_3*s_4
-    r_1_r4_x = r_1_t - c_4_t*r_1_r2_y
-    r_1_t_2 = c_4_t*r_4_t_3
-    r_1_r4_y = -r_1_t_2 - r_1_r2_y*s_4
-    r_1_r6_x = r_1_r2_x*s_5 - c_5_t*r_1_r4_y
-    r_1_r6_y = -c_5_t*r_1_r2_x - r_1_r4_y*s_5
-    # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-    v_1_x = e_1_r6_y*r_1_r4_x + r_1_r6_y*v_1_t
-    v_1_y = -e_1_r6_x*r_1_r4_x - r_1_r6_x*v_1_t
-    v_1_z = e_1_r6_x*r_1_r6_y - e_1_r6_y*r_1_r6_x
-    # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-    v_2_t = c_4_t*c_5_t
-    v_2_t_2 = c_4_t*s_5
-    # (rrrrrr-V4) from joint 2 to the connection point, along the links
-    r_2_r0_x_2 = c_3*r_2_x + r_3_r0_y*s_3
-    r_2_r0_y = c_3*r_3_r0_y - r_2_x*s_3
-    r_2_r2_x = r_1_t - c_4_t*r_2_r0_y
-    r_2_r2_y = -r_1_t_2 - r_2_r0_y*s_4
-    r_2_r4_x = r_2_r0_x_2*s_5 - c_5_t*r_2_r2_y
-    r_2_r4_y = -c_5_t*r_2_r0_x_2 - r_2_r2_y*s_5
-    # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-    v_2_x = r_2_r2_x*v_2_t_2 - r_2_r4_y*s_4
-    v_2_y = r_2_r4_x*s_4 - r_2_r2_x*v_2_t
-    v_2_z = r_2_r4_y*v_2_t - r_2_r4_x*v_2_t_2
-    # (rrrrrr-V3) from joint 3 to the connection point, along the links
-    r_3_r1_x = r_1_t - c_4_t*r_4_t_2
-    r_3_r1_y = -r_1_t_2 - r_4_t_2*s_4
-    r_3_r3_x = r_3_x*s_5 - c_5_t*r_3_r1_y
-    r_3_r3_y = -c_5_t*r_3_x - r_3_r1_y*s_5
-    # (rrrrrr-V8) velocity of the connection point per rate of joint 3
-    v_3_x = r_3_r1_x*v_2_t_2 - r_3_r3_y*s_4
-    v_3_y = r_3_r3_x*s_4 - r_3_r1_x*v_2_t
-    v_3_z = r_3_r3_y*v_2_t - r_3_r3_x*v_2_t_2
-    # (rrrrrr-V9) velocity of the connection point per rate of joint 4
-    v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t = c_4_t*s_3
-    w_1_t_2 = c_3*c_4_t
-    axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_2 - c_2_t*w_1_t
-    axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_2 + s_2*w_1_t
-    # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
-    c_1_t = sin(q_1)
-    # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
-    s_1 = cos(q_1)
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    axis_z_rrrrrr_axes5_r7_x = -axis_z_rrrrrr_axes5_r5_x*s_1 - c_1_t*s_4
-    axis_z_rrrrrr_axes5_r7_y = s_1*s_4 - axis_z_rrrrrr_axes5_r5_x*c_1_t
-    axis_z_rrrrrr_axes5_in_base_x = (
-    axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx + axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy
-        + axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
-    )
-    axis_z_rrrrrr_axes5_in_base_y = (
-    axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx + axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy
-        + axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
-    )
-    axis_z_rrrrrr_axes5_in_base_z = (
-    axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx + axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy
-        + axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
-    )
-    w_1_t_3 = s_4*s_5
-    axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_3
-    axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_3 - c_5_t*s_3
-    axis_y_rrrrrr_axes5_r5_x = -axis_y_rrrrrr_axes5_r4_x*c_2_t - axis_y_rrrrrr_axes5_r4_y*s_2
-    axis_y_rrrrrr_axes5_r5_y = axis_y_rrrrrr_axes5_r4_x*s_2 - axis_y_rrrrrr_axes5_r4_y*c_2_t
-    axis_y_rrrrrr_axes5_r7_x = -axis_y_rrrrrr_axes5_r5_x*s_1 - c_1_t*v_2_t_2
-    axis_y_rrrrrr_axes5_r7_y = s_1*v_2_t_2 - axis_y_rrrrrr_axes5_r5_x*c_1_t
-    axis_y_rrrrrr_axes5_in_base_x = (
-    axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx + axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy
-        + axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
-    )
-    axis_y_rrrrrr_axes5_in_base_y = (
-    axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx + axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy
-        + axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
-    )
-    axis_y_rrrrrr_axes5_in_base_z = (
-    axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx + axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy
-        + axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
-    )
-    axis_x_rrrrrr_axes5_x = (
-    axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_z -
-        axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_y
-    )
-    axis_x_rrrrrr_axes5_y = (
-    axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_x -
-        axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_z
-    )
-    axis_x_rrrrrr_axes5_z = (
-    axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_y -
-        axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_x
-    )
-    # (rrrrrr-G13) inertia tensor of link 5 about the connection point
-    J_5_t = J_5_xy*s_5
-    _x = -J_5_t - J_5_xx*c_5_t
-    J_5_t_2 = J_5_xy*c_5_t
-    _x_2 = -J_5_t_2 - J_5_yy*s_5
-    _x_3 = -J_5_xz*c_5_t - J_5_yz*s_5
-    _y = J_5_xz*s_5 - J_5_yz*c_5_t
-    # (rrrrrr-N33) inertia tensor of the links from 4 outwards about joint 4
-    Jc_4_xy = _x_3 - J_4_yz
-    Jc_4_xz = J_4_xz + _y
-    Jc_4_yy = J_4_yy - _x*c_5_t - _x_2*s_5
-    Jc_4_yz = _x*s_5 - J_4_xy - _x_2*c_5_t
-    Jc_4_zz = J_4_xx + s_5*(J_5_xx*s_5 - J_5_t_2) - c_5_t*(J_5_t - J_5_yy*c_5_t)
-    Jc_4_t = Jc_4_xy*s_4
-    _x_4 = -Jc_4_t - Jc_4_xx*c_4_t
-    Jc_4_t_2 = Jc_4_xy*c_4_t
-    _x_5 = -Jc_4_t_2 - Jc_4_yy*s_4
-    _x_6 = -Jc_4_xz*c_4_t - Jc_4_yz*s_4
-    _y_2 = Jc_4_xz*s_4 - Jc_4_yz*c_4_t
-    # (rrrrrr-G9) first moment of link 4 about the origin of link 4
-    h_4_r1_x = h_4_y*s_4 - c_4_t*h_4_z
-    h_4_r1_y = c_4_t*h_4_y + h_4_z*s_4
-    # (rrrrrr-N44) inertia tensor of the links from 3 outwards about joint 3
-    Jc_3_t = h_4_r1_x*rrrrrr_joint4_offset_x
-    Jc_3_t_4 = h_4_r1_y*rrrrrr_joint4_offset_x
-    Jc_3_xx = J_3_xx + Jc_3_t_3 + Jc_4_zz - 2.0*Jc_3_t_2
-    Jc_3_xy = J_3_xy + _x_6 - Jc_3_t
-    Jc_3_xz = J_3_xz + _y_2 - Jc_3_t_4
-    Jc_3_yy = J_3_yy + Jc_3_t_3 - _x_4*c_4_t - _x_5*s_4
-    Jc_3_yz = J_3_yz + _x_4*s_4 - _x_5*c_4_t
-    Jc_3_zz = J_3_zz + Jc_3_t_3 + s_4*(Jc_4_xx*s_4 - Jc_4_t_2) - c_4_t*(Jc_4_t - Jc_4_yy*c_4_t)
-    # (rrrrrr-N43) first moment of the links from 3 outwards
-    hc_3_y = h_3_y + h_4_r1_x
-    hc_3_z = h_3_z + h_4_r1_y
-    # (rrrrrr-N44) inertia tensor of the links from 3 outwards about joint 3
-    Jc_3_t_5 = Jc_3_xy*s_3
-    _x_7 = Jc_3_xx*c_3 - Jc_3_t_5
-    Jc_3_t_6 = Jc_3_xy*c_3
-    _x_8 = Jc_3_t_6 - Jc_3_yy*s_3
-    _x_9 = Jc_3_xz*c_3 - Jc_3_yz*s_3
-    _y_3 = Jc_3_xz*s_3 + Jc_3_yz*c_3
-    # (rrrrrr-N43) first moment of the links from 3 outwards
-    hc_3_r0_x = c_3*hc_3_x - hc_3_y*s_3
-    hc_3_r0_y = c_3*hc_3_y + hc_3_x*s_3
-    # (rrrrrr-N53) inertia tensor of the links from 2 outwards about joint 2
-    Jc_2_t_2 = rrrrrr_joint3_offset_x*(Jc_2_t + hc_3_r0_x)
-    Jc_2_t_3 = 2.0*Jc_2_t_2
-    Jc_2_xy = J_2_xy + _x_7*s_3 + _x_8*c_3 - hc_3_r0_y*rrrrrr_joint3_offset_x
-    Jc_2_zz = J_2_zz + Jc_2_t_3 + Jc_3_zz
-    _y_4 = s_2*(J_2_xz + _x_9 - hc_3_z*rrrrrr_joint3_offset_x) - c_2_t*(J_2_yz + _y_3)
-    _y_5 = (
-    s_2*(s_2*(J_2_xx + Jc_2_t_3 + _x_7*c_3 - 2.0*Jc_2_t_2 - _x_8*s_3) - Jc_2_xy*c_2_t) -
-        c_2_t*(Jc_2_xy*s_2 - c_2_t*(J_2_yy + Jc_2_t_3 + c_3*(Jc_3_t_5 + Jc_3_yy*c_3) +
-        s_3*(Jc_3_t_6 + Jc_3_xx*s_3)))
-    )
-    # (rrrrrr-N59) inertia tensor of the links from 1 outwards about joint 1
-    Jc_1_zz = J_1_xx + _y_5
-    # (rrrrrr-N48) moment about joint 2 that accelerates joint 3, per unit
-    L_c3_2_z = Jc_3_zz + hc_3_r0_x*rrrrrr_joint3_offset_x
-    L_c3_2_r0_y = _x_9*s_2 - _y_3*c_2_t
-    # (rrrrrr-N37) moment about joint 3 that accelerates joint 4, per unit
-    L_c4_3_y = _x_6 - Jc_3_t
-    L_c4_3_z = _y_2 - Jc_3_t_4
-    # (rrrrrr-N39) moment about joint 2 that accelerates joint 4, per unit
-    L_c4_2_y = Jc_4_zz*s_3 + L_c4_3_y*c_3 - h_4_r1_x*rrrrrr_joint3_offset_x
-    L_c4_2_z = L_c4_3_z - c_3*h_4_r1_y*rrrrrr_joint3_offset_x
-    L_c4_2_r0_y = s_2*(Jc_4_zz*c_3 - L_c4_3_y*s_3) - L_c4_2_y*c_2_t
-    # (rrrrrr-N27) moment about joint 5 that accelerates joint 5, per unit
-    L_c5_r2_x = -J_5_zz*c_4_t - _x_3*s_4
-    L_c5_r2_y = J_5_zz*s_4 - _x_3*c_4_t
-    L_c5_r5_y = s_2*(_y*c_3 - L_c5_r2_x*s_3) - c_2_t*(L_c5_r2_x*c_3 + _y*s_3)
-    # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
-    end_p1_r0_x = (
-    rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xy + R_yx*rrrrrr_base_frame_yy +
-        R_zx*rrrrrr_base_frame_zy) +
-        rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xy +
-        R_yy*rrrrrr_base_frame_yy + R_zy*rrrrrr_base_frame_zy) +
-        rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xy +
-        R_yz*rrrrrr_base_frame_yy + R_zz*rrrrrr_base_frame_zy)
-    )
-    end_p1_r0_y = (
-    rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xz + R_yx*rrrrrr_base_frame_yz +
-        R_zx*rrrrrr_base_frame_zz) +
-        rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xz +
-        R_yy*rrrrrr_base_frame_yz + R_zy*rrrrrr_base_frame_zz) +
-        rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xz +
-        R_yz*rrrrrr_base_frame_yz + R_zz*rrrrrr_base_frame_zz)
-    )
-    end_p1_r0_z = (
-    rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xx + R_yx*rrrrrr_base_frame_yx +
-        R_zx*rrrrrr_base_frame_zx) +
-        rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xx +
-        R_yy*rrrrrr_base_frame_yx + R_zy*rrrrrr_base_frame_zx) +
-        rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xx +
-        R_yz*rrrrrr_base_frame_yx + R_zz*rrrrrr_base_frame_zx)
-    )
-    end_p1_r1_x = end_p1_r0_y*s_1 - c_1_t*end_p1_r0_x
-    end_p1_r1_y = -c_1_t*end_p1_r0_y - end_p1_r0_x*s_1
-    end_p1_r3_x = end_p1_r0_z*s_2 - c_2_t*end_p1_r1_y
-    end_p1_r3_y = -c_2_t*end_p1_r0_z - end_p1_r1_y*s_2
-    end_p1_r4_x = c_3*end_p1_r3_x + end_p1_r3_y*s_3
-    end_p1_r4_y = c_3*end_p1_r3_y - end_p1_r3_x*s_3
-    end_p1_r6_x = end_p1_r1_x*s_4 - c_4_t*end_p1_r4_y
-    end_p1_r6_y = -c_4_t*end_p1_r1_x - end_p1_r4_y*s_4
-    end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
-    end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_4 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
-    w_1_t_5 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
-    w_1_t_6 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
-    w_1_t_7 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
-    w_1_t_8 = size*w_1_t_4
-    w_1_t_9 = size*w_1_t_6
-    w_1_t_10 = size*w_1_t_5
-    w_1_t_11 = size*w_1_t_7
-    w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
-    w_1_t_13 = c_5_t*end_p1_r6_x*size
-    w_1_t_14 = end_p1_r8_y*size
-    w_1_t_15 = sqrt(size_t + w_1_t_14*w_1_t_14)
-    inv_w_1_t_69 = 1.0/w_1_t_15
-    w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
-    w_1_t_17 = inv_w_1_t_69*w_1_t_14
-    w_1_t_18 = w_1_t_13*w_1_t_17
-    w_1_t_19 = w_1_t_16*w_1_t_18
-    w_1_t_20 = w_1_t_13 - w_1_t_17*w_1_t_18
-    w_1_t_21 = v_1_y*w_1_t_16 - w_1_t_17*w_1_t_9
-    w_1_t_22 = v_1_y - w_1_t_16*w_1_t_21
-    w_1_t_23 = w_1_t_9 + w_1_t_17*w_1_t_21
-    w_1_t_24 = w_1_t_11*w_1_t_17
-    w_1_t_25 = v_2_y*w_1_t_16 - w_1_t_24
-    w_1_t_26 = v_2_y - w_1_t_16*w_1_t_25
-    w_1_t_27 = w_1_t_11 + w_1_t_17*w_1_t_25
-    w_1_t_28 = w_1_t_24 - v_3_y*w_1_t_16
-    w_1_t_29 = v_3_y + w_1_t_16*w_1_t_28
-    w_1_t_30 = w_1_t_11 - w_1_t_17*w_1_t_28
-    w_1_t_31 = sqrt(v_4_z*v_4_z + w_1_t_12*w_1_t_12 + w_1_t_19*w_1_t_19 + w_1_t_20*w_1_t_20)
-    inv_w_1_t_101 = 1.0/w_1_t_31
-    w_1_t_32 = inv_w_1_t_101*w_1_t_19
-    w_1_t_33 = inv_w_1_t_101*v_4_z
-    w_1_t_34 = inv_w_1_t_101*w_1_t_12
-    w_1_t_35 = inv_w_1_t_101*w_1_t_20
-    w_1_t_36 = w_1_t_22*w_1_t_32 + w_1_t_23*w_1_t_35 + w_1_t_34*w_1_t_8 - v_1_z*w_1_t_33
-    w_1_t_37 = w_1_t_32*w_1_t_36 - w_1_t_22
-    w_1_t_38 = v_1_z + w_1_t_33*w_1_t_36
-    w_1_t_39 = w_1_t_34*w_1_t_36 - w_1_t_8
-    w_1_t_40 = w_1_t_35*w_1_t_36 - w_1_t_23
-    w_1_t_41 = w_1_t_10*w_1_t_34
-    w_1_t_42 = w_1_t_41 + w_1_t_26*w_1_t_32 + w_1_t_27*w_1_t_35 - v_2_z*w_1_t_33
-    w_1_t_43 = w_1_t_32*w_1_t_42 - w_1_t_26
-    w_1_t_44 = v_2_z + w_1_t_33*w_1_t_42
-    w_1_t_45 = w_1_t_34*w_1_t_42 - w_1_t_10
-    w_1_t_46 = w_1_t_35*w_1_t_42 - w_1_t_27
-    w_1_t_47 = w_1_t_41 + w_1_t_29*w_1_t_32 + w_1_t_30*w_1_t_35 - v_3_z*w_1_t_33
-    w_1_t_48 = w_1_t_32*w_1_t_47 - w_1_t_29
-    w_1_t_49 = v_3_z + w_1_t_33*w_1_t_47
-    w_1_t_50 = w_1_t_34*w_1_t_47 - w_1_t_10
-    w_1_t_51 = w_1_t_35*w_1_t_47 - w_1_t_30
-    w_1_t_52 = (
-    sqrt(v_1_x*v_1_x + w_1_t_37*w_1_t_37 + w_1_t_38*w_1_t_38 + w_1_t_39*w_1_t_39 +
-        w_1_t_40*w_1_t_40)
-    )
-    inv_w_1_t_150 = 1.0/w_1_t_52
-    w_1_t_53 = inv_w_1_t_150*v_1_x
-    w_1_t_54 = inv_w_1_t_150*w_1_t_37
-    w_1_t_55 = inv_w_1_t_150*w_1_t_38
-    w_1_t_56 = inv_w_1_t_150*w_1_t_39
-    w_1_t_57 = inv_w_1_t_150*w_1_t_40
-    w_1_t_58 = (
-    v_2_x*w_1_t_53 + w_1_t_43*w_1_t_54 + w_1_t_44*w_1_t_55 + w_1_t_45*w_1_t_56 + w_1_t_46*w_1_t_57
-    )
-    w_1_t_59 = v_2_x - w_1_t_53*w_1_t_58
-    w_1_t_60 = w_1_t_43 - w_1_t_54*w_1_t_58
-    w_1_t_61 = w_1_t_44 - w_1_t_55*w_1_t_58
-    w_1_t_62 = w_1_t_45 - w_1_t_56*w_1_t_58
-    w_1_t_63 = w_1_t_46 - w_1_t_57*w_1_t_58
-    w_1_t_64 = (
-    v_3_x*w_1_t_53 + w_1_t_48*w_1_t_54 + w_1_t_49*w_1_t_55 + w_1_t_50*w_1_t_56 + w_1_t_51*w_1_t_57
-    )
-    w_1_t_65 = v_3_x - w_1_t_53*w_1_t_64
-    w_1_t_66 = w_1_t_48 - w_1_t_54*w_1_t_64
-    w_1_t_67 = w_1_t_49 - w_1_t_55*w_1_t_64
-    w_1_t_68 = w_1_t_50 - w_1_t_56*w_1_t_64
-    w_1_t_69 = w_1_t_51 - w_1_t_57*w_1_t_64
-    w_1_t_70 = (
-    sqrt(w_1_t_59*w_1_t_59 + w_1_t_60*w_1_t_60 + w_1_t_61*w_1_t_61 + w_1_t_62*w_1_t_62 +
-        w_1_t_63*w_1_t_63)
-    )
-    inv_w_1_t_194 = 1.0/w_1_t_70
-    w_1_t_71 = inv_w_1_t_194*w_1_t_59
-    w_1_t_72 = inv_w_1_t_194*w_1_t_60
-    w_1_t_73 = inv_w_1_t_194*w_1_t_61
-    w_1_t_74 = inv_w_1_t_194*w_1_t_62
-    w_1_t_75 = inv_w_1_t_194*w_1_t_63
-    w_1_t_76 = (
-    w_1_t_65*w_1_t_71 + w_1_t_66*w_1_t_72 + w_1_t_67*w_1_t_73 + w_1_t_68*w_1_t_74 +
-        w_1_t_69*w_1_t_75
-    )
-    w_1_t_77 = w_1_t_65 - w_1_t_71*w_1_t_76
-    w_1_t_78 = w_1_t_66 - w_1_t_72*w_1_t_76
-    w_1_t_79 = w_1_t_67 - w_1_t_73*w_1_t_76
-    w_1_t_80 = w_1_t_68 - w_1_t_74*w_1_t_76
-    w_1_t_81 = w_1_t_69 - w_1_t_75*w_1_t_76
-    w_1_t_82 = (
-    sqrt(w_1_t_77*w_1_t_77 + w_1_t_78*w_1_t_78 + w_1_t_79*w_1_t_79 + w_1_t_80*w_1_t_80 +
-        w_1_t_81*w_1_t_81)
-    )
-    inv_w_1_t_222 = 1.0/w_1_t_82
-    w_1_t_83 = inv_w_1_t_222*w_1_t_77
-    w_1_t_84 = inv_w_1_t_222*w_1_t_78
-    w_1_t_85 = inv_w_1_t_222*w_1_t_79
-    w_1_t_86 = inv_w_1_t_222*w_1_t_80
-    w_1_t_87 = inv_w_1_t_222*w_1_t_81
-    w_1_t_88 = inv_w_1_t_150*inv_w_1_t_194*w_1_t_58
-    w_1_t_89 = inv_w_1_t_222*(inv_w_1_t_150*w_1_t_64 - w_1_t_76*w_1_t_88)
-    w_1_t_90 = w_1_t_71*w_1_t_88 + w_1_t_83*w_1_t_89 - inv_w_1_t_150*w_1_t_53
-    w_1_t_91 = w_1_t_72*w_1_t_88 + w_1_t_84*w_1_t_89 - inv_w_1_t_150*w_1_t_54
-    w_1_t_92 = w_1_t_73*w_1_t_88 + w_1_t_85*w_1_t_89 - inv_w_1_t_150*w_1_t_55
-    w_1_t_93 = size*(w_1_t_74*w_1_t_88 + w_1_t_86*w_1_t_89 - inv_w_1_t_150*w_1_t_56)
-    w_1_t_94 = size*(w_1_t_75*w_1_t_88 + w_1_t_87*w_1_t_89 - inv_w_1_t_150*w_1_t_57)
-    # (rrrrrr-V16) force part of reciprocal wrench 2
-    w_2_t = inv_w_1_t_194*inv_w_1_t_222*w_1_t_76
-    w_2_t_2 = inv_w_1_t_194*w_1_t_71 - w_1_t_83*w_2_t
-    w_2_t_3 = inv_w_1_t_194*w_1_t_72 - w_1_t_84*w_2_t
-    w_2_t_4 = w_1_t_85*w_2_t - inv_w_1_t_194*w_1_t_73
-    w_2_t_5 = size*(inv_w_1_t_194*w_1_t_74 - w_1_t_86*w_2_t)
-    w_2_t_6 = size*(inv_w_1_t_194*w_1_t_75 - w_1_t_87*w_2_t)
-    # (rrrrrr-V19) force part of reciprocal wrench 3
-    w_3_t = inv_w_1_t_222*w_1_t_83
-    w_3_t_2 = inv_w_1_t_222*w_1_t_84
-    w_3_t_3 = inv_w_1_t_222*w_1_t_85
-    w_3_t_4 = inv_w_1_t_222*size*w_1_t_86
-    w_3_t_5 = inv_w_1_t_222*size*w_1_t_87
-    # (rrrrrr-V22) force part of reciprocal wrench 4
-    w_4_t = inv_w_1_t_101*inv_w_1_t_150*w_1_t_36
-    w_4_t_2 = inv_w_1_t_194*(inv_w_1_t_101*w_1_t_42 - w_1_t_58*w_4_t)
-    w_4_t_3 = inv_w_1_t_222*(w_1_t_64*w_4_t + w_1_t_76*w_4_t_2 - inv_w_1_t_101*w_1_t_47)
-    w_4_t_4 = w_1_t_53*w_4_t + w_1_t_71*w_4_t_2 - w_1_t_83*w_4_t_3
-    w_4_t_5 = inv_w_1_t_101*w_1_t_32 + w_1_t_54*w_4_t + w_1_t_72*w_4_t_2 - w_1_t_84*w_4_t_3
-    w_4_t_6 = inv_w_1_t_101*w_1_t_33 + w_1_t_55*w_4_t + w_1_t_73*w_4_t_2 - w_1_t_85*w_4_t_3
-    w_4_t_7 = size*(inv_w_1_t_101*w_1_t_34 + w_1_t_56*w_4_t + w_1_t_74*w_4_t_2 - w_1_t_86*w_4_t_3)
-    w_4_t_8 = size*(inv_w_1_t_101*w_1_t_35 + w_1_t_57*w_4_t + w_1_t_75*w_4_t_2 - w_1_t_87*w_4_t_3)
-    # (rrrrrr-V25) force part of reciprocal wrench 5
-    w_5_t = inv_w_1_t_101*inv_w_1_t_69*w_1_t_18
-    w_5_t_2 = inv_w_1_t_150*(inv_w_1_t_69*w_1_t_21 + w_1_t_36*w_5_t)
-    w_5_t_3 = inv_w_1_t_194*(inv_w_1_t_69*w_1_t_25 + w_1_t_42*w_5_t - w_1_t_58*w_5_t_2)
-    w_5_t_4 = (
-    inv_w_1_t_222*(inv_w_1_t_69*w_1_t_28 + w_1_t_64*w_5_t_2 + w_1_t_76*w_5_t_3 - w_1_t_47*w_5_t)
-    )
-    w_5_t_5 = w_1_t_53*w_5_t_2 + w_1_t_71*w_5_t_3 - w_1_t_83*w_5_t_4
-    w_5_t_6 = (
-    inv_w_1_t_69*w_1_t_16 + w_1_t_32*w_5_t + w_1_t_54*w_5_t_2 + w_1_t_72*w_5_t_3 -
-        w_1_t_84*w_5_t_4
-    )
-    w_5_t_7 = w_1_t_33*w_5_t + w_1_t_55*w_5_t_2 + w_1_t_73*w_5_t_3 - w_1_t_85*w_5_t_4
-    w_5_t_8 = size*(w_1_t_34*w_5_t + w_1_t_56*w_5_t_2 + w_1_t_74*w_5_t_3 - w_1_t_86*w_5_t_4)
-    w_5_t_9 = (
-    size*(w_1_t_35*w_5_t + w_1_t_57*w_5_t_2 + w_1_t_75*w_5_t_3 - inv_w_1_t_69*w_1_t_17 -
-        w_1_t_87*w_5_t_4)
-    )
-    # (rrrrrr-N112) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-    d_Gamma_1_t = L_c5_r5_y*inv_w_1_t_69
-    d_Gamma_1_t_2 = inv_w_1_t_101*(L_c4_2_r0_y - d_Gamma_1_t*w_1_t_18)
-    d_Gamma_1_t_3 = inv_w_1_t_150*(Jc_1_zz + d_Gamma_1_t_2*w_1_t_36 - d_Gamma_1_t*w_1_t_21)
-    d_Gamma_1_t_4 = (
-    inv_w_1_t_194*(_y_4 + d_Gamma_1_t_2*w_1_t_42 - d_Gamma_1_t*w_1_t_25 - d_Gamma_1_t_3*w_1_t_58)
-    )
-    d_Gamma_1_t_5 = (
-    inv_w_1_t_222*(L_c3_2_r0_y + d_Gamma_1_t*w_1_t_28 + d_Gamma_1_t_2*w_1_t_47 -
-        d_Gamma_1_t_3*w_1_t_64 - d_Gamma_1_t_4*w_1_t_76)
-    )
-    d_Gamma_1_x = (
-    d_Gamma_1_t_3*w_1_t_53 + d_Gamma_1_t_4*w_1_t_71 + d_Gamma_1_t_5*w_1_t_83 + e_1_r6_y*h_5_z +
-        h_5_y*v_1_t
-    )
-    d_Gamma_1_y = (
-    d_Gamma_1_t*w_1_t_16 - d_Gamma_1_t_2*w_1_t_32 - d_Gamma_1_t_3*w_1_t_54 -
-        d_Gamma_1_t_4*w_1_t_72 - d_Gamma_1_t_5*w_1_t_84 - e_1_r6_x*h_5_z - h_5_x*v_1_t
-    )
-    d_Gamma_1_z = (
-    d_Gamma_1_t_2*w_1_t_33 + d_Gamma_1_t_3*w_1_t_55 + d_Gamma_1_t_4*w_1_t_73 +
-        d_Gamma_1_t_5*w_1_t_85 + e_1_r6_x*h_5_y - e_1_r6_y*h_5_x
-    )
-    # (rrrrrr-N102) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-    d_Gamma_2_t = h_5_z*v_2_t_2 - h_5_y*s_4
-    d_Gamma_2_t_2 = h_5_z*v_2_t - h_5_x*s_4
-    d_Gamma_2_t_3 = h_5_y*v_2_t - h_5_x*v_2_t_2
-    d_Gamma_2_t_4 = L_c5_r2_y*inv_w_1_t_69
-    d_Gamma_2_t_5 = d_Gamma_2_t_4*w_1_t_18
-    d_Gamma_2_t_6 = inv_w_1_t_101*(L_c4_2_z - d_Gamma_2_t_5)
-    d_Gamma_2_t_7 = d_Gamma_2_t_4*w_1_t_21
-    d_Gamma_2_t_8 = inv_w_1_t_150*(_y_4 + d_Gamma_2_t_6*w_1_t_36 - d_Gamma_2_t_7)
-    d_Gamma_2_t_9 = d_Gamma_2_t_4*w_1_t_25
-    d_Gamma_2_t_10 = (
-    inv_w_1_t_194*(Jc_2_zz + d_Gamma_2_t_6*w_1_t_42 - d_Gamma_2_t_9 - d_Gamma_2_t_8*w_1_t_58)
-    )
-    d_Gamma_2_t_11 = d_Gamma_2_t_4*w_1_t_28
-    d_Gamma_2_t_12 = (
-    inv_w_1_t_222*(L_c3_2_z + d_Gamma_2_t_11 + d_Gamma_2_t_6*w_1_t_47 - d_Gamma_2_t_10*w_1_t_76 -
-        d_Gamma_2_t_8*w_1_t_64)
-    )
-    d_Gamma_2_t_13 = d_Gamma_2_t_4*w_1_t_16
-    d_Gamma_2_x = (
-    d_Gamma_2_t + d_Gamma_2_t_10*w_1_t_71 + d_Gamma_2_t_12*w_1_t_83 + d_Gamma_2_t_8*w_1_t_53
-    )
-    d_Gamma_2_y = (
-    d_Gamma_2_t_13 - d_Gamma_2_t_2 - d_Gamma_2_t_10*w_1_t_72 - d_Gamma_2_t_12*w_1_t_84 -
-        d_Gamma_2_t_6*w_1_t_32 - d_Gamma_2_t_8*w_1_t_54
-    )
-    d_Gamma_2_z = (
-    d_Gamma_2_t_3 + d_Gamma_2_t_10*w_1_t_73 + d_Gamma_2_t_12*w_1_t_85 + d_Gamma_2_t_6*w_1_t_33 +
-        d_Gamma_2_t_8*w_1_t_55
-    )
-    # (rrrrrr-N90) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-    d_Gamma_3_t = inv_w_1_t_101*(L_c4_3_z - d_Gamma_2_t_5)
-    d_Gamma_3_t_2 = inv_w_1_t_150*(L_c3_2_r0_y + d_Gamma_3_t*w_1_t_36 - d_Gamma_2_t_7)
-    d_Gamma_3_t_3 = (
-    inv_w_1_t_194*(L_c3_2_z + d_Gamma_3_t*w_1_t_42 - d_Gamma_2_t_9 - d_Gamma_3_t_2*w_1_t_58)
-    )
-    d_Gamma_3_t_4 = (
-    inv_w_1_t_222*(Jc_3_zz + d_Gamma_2_t_11 + d_Gamma_3_t*w_1_t_47 - d_Gamma_3_t_2*w_1_t_64 -
-        d_Gamma_3_t_3*w_1_t_76)
-    )
-    d_Gamma_3_x = (
-    d_Gamma_2_t + d_Gamma_3_t_2*w_1_t_53 + d_Gamma_3_t_3*w_1_t_71 + d_Gamma_3_t_4*w_1_t_83
-    )
-    d_Gamma_3_y = (
-    d_Gamma_2_t_13 - d_Gamma_2_t_2 - d_Gamma_3_t*w_1_t_32 - d_Gamma_3_t_2*w_1_t_54 -
-        d_Gamma_3_t_3*w_1_t_72 - d_Gamma_3_t_4*w_1_t_84
-    )
-    d_Gamma_3_z = (
-    d_Gamma_2_t_3 + d_Gamma_3_t*w_1_t_33 + d_Gamma_3_t_2*w_1_t_55 + d_Gamma_3_t_3*w_1_t_73 +
-        d_Gamma_3_t_4*w_1_t_85
-    )
-    # (rrrrrr-N78) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
-    d_Gamma_4_t = _y*inv_w_1_t_69
-    d_Gamma_4_t_2 = inv_w_1_t_101*(Jc_4_zz - d_Gamma_4_t*w_1_t_18)
-    d_Gamma_4_t_3 = inv_w_1_t_150*(L_c4_2_r0_y + d_Gamma_4_t_2*w_1_t_36 - d_Gamma_4_t*w_1_t_21)
-    d_Gamma_4_t_4 = (
-    inv_w_1_t_194*(L_c4_2_z + d_Gamma_4_t_2*w_1_t_42 - d_Gamma_4_t*w_1_t_25 -
-        d_Gamma_4_t_3*w_1_t_58)
-    )
-    d_Gamma_4_t_5 = (
-    inv_w_1_t_222*(L_c4_3_z + d_Gamma_4_t*w_1_t_28 + d_Gamma_4_t_2*w_1_t_47 -
-        d_Gamma_4_t_3*w_1_t_64 - d_Gamma_4_t_4*w_1_t_76)
-    )
-    d_Gamma_4_x = (
-    d_Gamma_4_t_3*w_1_t_53 + d_Gamma_4_t_4*w_1_t_71 + d_Gamma_4_t_5*w_1_t_83 - c_5_t*h_5_z
-    )
-    d_Gamma_4_y = (
-    d_Gamma_4_t*w_1_t_16 - d_Gamma_4_t_2*w_1_t_32 - d_Gamma_4_t_3*w_1_t_54 -
-        d_Gamma_4_t_4*w_1_t_72 - d_Gamma_4_t_5*w_1_t_84 - h_5_z*s_5
-    )
-    d_Gamma_4_z = (
-    c_5_t*h_5_x + d_Gamma_4_t_2*w_1_t_33 + d_Gamma_4_t_3*w_1_t_55 + d_Gamma_4_t_4*w_1_t_73 +
-        d_Gamma_4_t_5*w_1_t_85 + h_5_y*s_5
-    )
-    # (rrrrrr-N68) coefficient of the acceleration in: moment about axis 5 of the distal links' inertia and weight
-    d_Gamma_5_t = J_5_zz*inv_w_1_t_69
-    d_Gamma_5_t_2 = inv_w_1_t_101*(_y - d_Gamma_5_t*w_1_t_18)
-    d_Gamma_5_t_3 = inv_w_1_t_150*(L_c5_r5_y + d_Gamma_5_t_2*w_1_t_36 - d_Gamma_5_t*w_1_t_21)
-    d_Gamma_5_t_4 = (
-    inv_w_1_t_194*(L_c5_r2_y + d_Gamma_5_t_2*w_1_t_42 - d_Gamma_5_t*w_1_t_25 -
-        d_Gamma_5_t_3*w_1_t_58)
-    )
-    d_Gamma_5_t_5 = (
-    inv_w_1_t_222*(L_c5_r2_y + d_Gamma_5_t*w_1_t_28 + d_Gamma_5_t_2*w_1_t_47 -
-        d_Gamma_5_t_3*w_1_t_64 - d_Gamma_5_t_4*w_1_t_76)
-    )
-    d_Gamma_5_t_6 = (
-    d_Gamma_5_t_2*w_1_t_33 + d_Gamma_5_t_3*w_1_t_55 + d_Gamma_5_t_4*w_1_t_73 +
-        d_Gamma_5_t_5*w_1_t_85
-    )
-    d_Gamma_5_x = d_Gamma_5_t_3*w_1_t_53 + d_Gamma_5_t_4*w_1_t_71 + d_Gamma_5_t_5*w_1_t_83 - h_5_y
-    d_Gamma_5_y = (
-    h_5_x + d_Gamma_5_t*w_1_t_16 - d_Gamma_5_t_2*w_1_t_32 - d_Gamma_5_t_3*w_1_t_54 -
-        d_Gamma_5_t_4*w_1_t_72 - d_Gamma_5_t_5*w_1_t_84
-    )
-    # (rrrrrr-A48) coefficient of the acceleration in: angular acceleration of link 5
-    d_alpha_5_xz = s_5*w_4_t_6 + v_2_t*w_3_t_3 - e_1_r6_x*w_1_t_92 - v_2_t*w_2_t_4
-    d_alpha_5_yz = v_2_t_2*w_3_t_3 - c_5_t*w_4_t_6 - e_1_r6_y*w_1_t_92 - v_2_t_2*w_2_t_4
-    d_alpha_5_zy = w_5_t_6 - s_4*w_2_t_3 - s_4*w_3_t_2 - v_1_t*w_1_t_91
-    d_alpha_5_zz = s_4*w_3_t_3 + v_1_t*w_1_t_92 - w_5_t_7 - s_4*w_2_t_4
-    # (rrrrrr-N25) coefficient of the acceleration in: inertia force of link 5 from its turning about its reference point
-    d_phi_5_t = (
-    h_5_z*(v_2_t_2*w_2_t_2 + v_2_t_2*w_3_t - c_5_t*w_4_t_4 - e_1_r6_y*w_1_t_90) -
-        h_5_y*(s_4*w_2_t_2 + s_4*w_3_t + v_1_t*w_1_t_90 - w_5_t_5)
-    )
-    # (rrrrrr-N132) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_xx = (
-    d_Gamma_1_x*w_1_t_90 + d_Gamma_5_x*w_5_t_5 - d_phi_5_t - d_Gamma_2_x*w_2_t_2 -
-        d_Gamma_3_x*w_3_t - d_Gamma_4_x*w_4_t_4
-    )
-    d_c_xy = (
-    d_Gamma_1_y*w_1_t_90 + d_Gamma_5_y*w_5_t_5 + d_alpha_5_zy*h_5_y - d_Gamma_2_y*w_2_t_2 -
-        d_Gamma_3_y*w_3_t - d_Gamma_4_y*w_4_t_4 - h_5_z*(c_5_t*w_4_t_5 + e_1_r6_y*w_1_t_91 -
-        v_2_t_2*w_2_t_3 - v_2_t_2*w_3_t_2)
-    )
-    d_c_xz = (
-    d_Gamma_1_z*w_1_t_90 + d_Gamma_5_t_6*w_5_t_5 + d_alpha_5_zz*h_5_y - d_Gamma_2_z*w_2_t_2 -
-        d_Gamma_3_z*w_3_t - d_Gamma_4_z*w_4_t_4 - d_alpha_5_yz*h_5_z
-    )
-    d_c_yy = (
-    d_Gamma_2_y*w_2_t_3 + d_Gamma_3_y*w_3_t_2 + d_Gamma_4_y*w_4_t_5 + h_5_z*(e_1_r6_x*w_1_t_91 -
-        s_5*w_4_t_5 - v_2_t*w_2_t_3 - v_2_t*w_3_t_2) - d_Gamma_1_y*w_1_t_91 - d_Gamma_5_y*w_5_t_6
-        - d_alpha_5_zy*h_5_x
-    )
-    d_c_yz = (
-    d_Gamma_2_z*w_2_t_3 + d_Gamma_3_z*w_3_t_2 + d_Gamma_4_z*w_4_t_5 + d_alpha_5_xz*h_5_z -
-        d_Gamma_1_z*w_1_t_91 - d_Gamma_5_t_6*w_5_t_6 - d_alpha_5_zz*h_5_x
-    )
-    # (rrrrrr-N134) inertia of the leg at the connection point, without the mass gathered there
-    Q_t = d_c_xx - d_c_yy
-    Q_t_2 = 0.5*Q_t
-    Q_t_3 = (
-    d_c_xx + d_Gamma_3_z*w_3_t_3 + d_Gamma_4_z*w_4_t_6 + d_alpha_5_xz*h_5_y - d_Gamma_1_z*w_1_t_92
-        - d_Gamma_2_z*w_2_t_4 - d_Gamma_5_t_6*w_5_t_7 - d_alpha_5_yz*h_5_x
-    )
-    Q_t_4 = 0.5*Q_t_3
-    Q_t_5 = (
-    axis_x_rrrrrr_axes5_x*d_c_xy + axis_z_rrrrrr_axes5_in_base_x*d_c_yz -
-        Q_t_2*axis_y_rrrrrr_axes5_in_base_x
-    )
-    Q_t_6 = (
-    axis_x_rrrrrr_axes5_y*d_c_xy + axis_z_rrrrrr_axes5_in_base_y*d_c_yz -
-        Q_t_2*axis_y_rrrrrr_axes5_in_base_y
-    )
-    Q_t_7 = (
-    axis_x_rrrrrr_axes5_z*d_c_xy + axis_z_rrrrrr_axes5_in_base_z*d_c_yz -
-        Q_t_2*axis_y_rrrrrr_axes5_in_base_z
-    )
-    Q_t_8 = Q_t_4*axis_z_rrrrrr_axes5_in_base_x - axis_x_rrrrrr_axes5_x*d_c_xz
-    Q_t_9 = Q_t_4*axis_z_rrrrrr_axes5_in_base_y - axis_x_rrrrrr_axes5_y*d_c_xz
-    Q_t_10 = Q_t_4*axis_z_rrrrrr_axes5_in_base_z - axis_x_rrrrrr_axes5_z*d_c_xz
-    Q_t_11 = Q_t_5*axis_y_rrrrrr_axes5_in_base_x - Q_t_8*axis_z_rrrrrr_axes5_in_base_x
-    Q_t_12 = 2.0*Q_t_11 + d_c_xx
-    Q_t_13 = (
-    Q_t_5*axis_y_rrrrrr_axes5_in_base_y + Q_t_6*axis_y_rrrrrr_axes5_in_base_x -
-        Q_t_8*axis_z_rrrrrr_axes5_in_base_y - Q_t_9*axis_z_rrrrrr_axes5_in_base_x
-    )
-    Q_t_14 = (
-    Q_t_5*axis_y_rrrrrr_axes5_in_base_z + Q_t_7*axis_y_rrrrrr_axes5_in_base_x -
-        Q_t_10*axis_z_rrrrrr_axes5_in_base_x - Q_t_8*axis_z_rrrrrr_axes5_in_base_z
-    )
-    Q_t_15 = Q_t_6*axis_y_rrrrrr_axes5_in_base_y - Q_t_9*axis_z_rrrrrr_axes5_in_base_y
-    Q_t_16 = 2.0*Q_t_15 + d_c_xx
-    Q_t_17 = (
-    Q_t_6*axis_y_rrrrrr_axes5_in_base_z + Q_t_7*axis_y_rrrrrr_axes5_in_base_y -
-        Q_t_10*axis_z_rrrrrr_axes5_in_base_y - Q_t_9*axis_z_rrrrrr_axes5_in_base_z
-    )
-    Q_t_18 = Q_t_7*axis_y_rrrrrr_axes5_in_base_z - Q_t_10*axis_z_rrrrrr_axes5_in_base_z
-    Q_t_19 = 2.0*Q_t_18 + d_c_xx
-    # (rrrrrr-V28) moment part of reciprocal wrench 1
-    o_1_t = end_p1_r8_y*w_1_t_93
-    o_1_t_2 = end_p1_r8_y*w_1_t_94
-    o_1_y = end_p1_r6_x*w_1_t_94 - end_p1_r8_x*w_1_t_93
-    # (rrrrrr-V29) moment part of reciprocal wrench 2
-    o_2_t = end_p1_r8_y*w_2_t_5
-    o_2_t_2 = end_p1_r8_y*w_2_t_6
-    o_2_y = end_p1_r8_x*w_2_t_5 - end_p1_r6_x*w_2_t_6
-    # (rrrrrr-V30) moment part of reciprocal wrench 3
-    o_3_t = end_p1_r8_y*w_3_t_4
-    o_3_t_2 = end_p1_r8_y*w_3_t_5
-    o_3_y = end_p1_r8_x*w_3_t_4 - end_p1_r6_x*w_3_t_5
-    # (rrrrrr-V31) moment part of reciprocal wrench 4
-    o_4_t = end_p1_r8_y*w_4_t_7
-    o_4_t_2 = end_p1_r8_y*w_4_t_8
-    o_4_y = end_p1_r8_x*w_4_t_7 - end_p1_r6_x*w_4_t_8
-    # (rrrrrr-V32) moment part of reciprocal wrench 5
-    o_5_t = end_p1_r8_y*w_5_t_8
-    o_5_t_2 = end_p1_r8_y*w_5_t_9
-    o_5_y = end_p1_r6_x*w_5_t_9 - end_p1_r8_x*w_5_t_8
-    # (rrrrrr-N111) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-    d0_Gamma_1_x = (
-    Jc_1_zz*o_1_t + L_c5_r5_y*o_5_t - L_c3_2_r0_y*o_3_t - L_c4_2_r0_y*o_4_t - _y_4*o_2_t
-    )
-    d0_Gamma_1_y = (
-    Jc_1_zz*o_1_y + L_c3_2_r0_y*o_3_y + L_c4_2_r0_y*o_4_y + L_c5_r5_y*o_5_y + _y_4*o_2_y
-    )
-    d0_Gamma_1_z = (
-    L_c3_2_r0_y*o_3_t_2 + L_c4_2_r0_y*o_4_t_2 + _y_4*o_2_t_2 - Jc_1_zz*o_1_t_2 - L_c5_r5_y*o_5_t_2
-    )
-    # (rrrrrr-N101) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-    d0_Gamma_2_t = L_c5_r2_y*o_5_t
-    d0_Gamma_2_t_2 = L_c5_r2_y*o_5_y
-    d0_Gamma_2_t_3 = L_c5_r2_y*o_5_t_2
-    d0_Gamma_2_x = d0_Gamma_2_t + _y_4*o_1_t - Jc_2_zz*o_2_t - L_c3_2_z*o_3_t - L_c4_2_z*o_4_t
-    d0_Gamma_2_y = d0_Gamma_2_t_2 + Jc_2_zz*o_2_y + L_c3_2_z*o_3_y + L_c4_2_z*o_4_y + _y_4*o_1_y
-    d0_Gamma_2_z = (
-    Jc_2_zz*o_2_t_2 + L_c3_2_z*o_3_t_2 + L_c4_2_z*o_4_t_2 - d0_Gamma_2_t_3 - _y_4*o_1_t_2
-    )
-    # (rrrrrr-N89) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-    d0_Gamma_3_x = (
-    d0_Gamma_2_t + L_c3_2_r0_y*o_1_t - Jc_3_zz*o_3_t - L_c3_2_z*o_2_t - L_c4_3_z*o_4_t
-    )
-    d0_Gamma_3_y = (
-    d0_Gamma_2_t_2 + Jc_3_zz*o_3_y + L_c3_2_r0_y*o_1_y + L_c3_2_z*o_2_y + L_c4_3_z*o_4_y
-    )
-    d0_Gamma_3_z = (
-    Jc_3_zz*o_3_t_2 + L_c3_2_z*o_2_t_2 + L_c4_3_z*o_4_t_2 - d0_Gamma_2_t_3 - L_c3_2_r0_y*o_1_t_2
-    )
-    # (rrrrrr-N77) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
-    d0_Gamma_4_x = L_c4_2_r0_y*o_1_t + _y*o_5_t - Jc_4_zz*o_4_t - L_c4_2_z*o_2_t - L_c4_3_z*o_3_t
-    d0_Gamma_4_y = Jc_4_zz*o_4_y + L_c4_2_r0_y*o_1_y + L_c4_2_z*o_2_y + L_c4_3_z*o_3_y + _y*o_5_y
-    d0_Gamma_4_z = (
-    Jc_4_zz*o_4_t_2 + L_c4_2_z*o_2_t_2 + L_c4_3_z*o_3_t_2 - L_c4_2_r0_y*o_1_t_2 - _y*o_5_t_2
-    )
-    # (rrrrrr-N67) coefficient of the acceleration in: moment about axis 5 of the distal links' inertia and weight
-    d0_Gamma_5_x = J_5_zz*o_5_t + L_c5_r5_y*o_1_t - L_c5_r2_y*o_2_t - L_c5_r2_y*o_3_t - _y*o_4_t
-    d0_Gamma_5_y = J_5_zz*o_5_y + L_c5_r2_y*o_2_y + L_c5_r2_y*o_3_y + L_c5_r5_y*o_1_y + _y*o_4_y
-    d0_Gamma_5_z = (
-    L_c5_r2_y*o_2_t_2 + L_c5_r2_y*o_3_t_2 + _y*o_4_t_2 - J_5_zz*o_5_t_2 - L_c5_r5_y*o_1_t_2
-    )
-    # (rrrrrr-A47) coefficient of the acceleration in: angular acceleration of link 5
-    d0_alpha_5_xx = e_1_r6_x*o_1_t - o_2_t*v_2_t - o_3_t*v_2_t - o_4_t*s_5
-    d0_alpha_5_xy = e_1_r6_x*o_1_y + o_2_y*v_2_t + o_3_y*v_2_t + o_4_y*s_5
-    d0_alpha_5_xz = o_2_t_2*v_2_t + o_3_t_2*v_2_t + o_4_t_2*s_5 - e_1_r6_x*o_1_t_2
-    d0_alpha_5_yx = c_5_t*o_4_t + e_1_r6_y*o_1_t - o_2_t*v_2_t_2 - o_3_t*v_2_t_2
-    d0_alpha_5_yy = e_1_r6_y*o_1_y + o_2_y*v_2_t_2 + o_3_y*v_2_t_2 - c_5_t*o_4_y
-    d0_alpha_5_yz = o_2_t_2*v_2_t_2 + o_3_t_2*v_2_t_2 - c_5_t*o_4_t_2 - e_1_r6_y*o_1_t_2
-    d0_alpha_5_zx = o_5_t - o_1_t*v_1_t - o_2_t*s_4 - o_3_t*s_4
-    d0_alpha_5_zy = o_5_y + o_2_y*s_4 + o_3_y*s_4 - o_1_y*v_1_t
-    d0_alpha_5_zz = o_1_t_2*v_1_t + o_2_t_2*s_4 + o_3_t_2*s_4 - o_5_t_2
-    # (rrrrrr-N131) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d0_c_xx = (
-    d0_Gamma_1_x*w_1_t_90 + d0_Gamma_5_x*w_5_t_5 + d0_alpha_5_zx*h_5_y - d0_Gamma_2_x*w_2_t_2 -
-        d0_Gamma_3_x*w_3_t - d0_Gamma_4_x*w_4_t_4 - d0_alpha_5_yx*h_5_z
-    )
-    d0_c_xy = (
-    d0_Gamma_1_y*w_1_t_90 + d0_Gamma_5_y*w_5_t_5 + d0_alpha_5_zy*h_5_y - d0_Gamma_2_y*w_2_t_2 -
-        d0_Gamma_3_y*w_3_t - d0_Gamma_4_y*w_4_t_4 - d0_alpha_5_yy*h_5_z
-    )
-    d0_c_xz = (
-    d0_Gamma_1_z*w_1_t_90 + d0_Gamma_5_z*w_5_t_5 + d0_alpha_5_zz*h_5_y - d0_Gamma_2_z*w_2_t_2 -
-        d0_Gamma_3_z*w_3_t - d0_Gamma_4_z*w_4_t_4 - d0_alpha_5_yz*h_5_z
-    )
-    d0_c_yx = (
-    d0_Gamma_2_x*w_2_t_3 + d0_Gamma_3_x*w_3_t_2 + d0_Gamma_4_x*w_4_t_5 + d0_alpha_5_xx*h_5_z -
-        d0_Gamma_1_x*w_1_t_91 - d0_Gamma_5_x*w_5_t_6 - d0_alpha_5_zx*h_5_x
-    )
-    d0_c_yy = (
-    d0_Gamma_2_y*w_2_t_3 + d0_Gamma_3_y*w_3_t_2 + d0_Gamma_4_y*w_4_t_5 + d0_alpha_5_xy*h_5_z -
-        d0_Gamma_1_y*w_1_t_91 - d0_Gamma_5_y*w_5_t_6 - d0_alpha_5_zy*h_5_x
-    )
-    d0_c_yz = (
-    d0_Gamma_2_z*w_2_t_3 + d0_Gamma_3_z*w_3_t_2 + d0_Gamma_4_z*w_4_t_5 + d0_alpha_5_xz*h_5_z -
-        d0_Gamma_1_z*w_1_t_91 - d0_Gamma_5_z*w_5_t_6 - d0_alpha_5_zz*h_5_x
-    )
-    d0_c_zx = (
-    d0_Gamma_1_x*w_1_t_92 + d0_Gamma_2_x*w_2_t_4 + d0_Gamma_5_x*w_5_t_7 + d0_alpha_5_yx*h_5_x -
-        d0_Gamma_3_x*w_3_t_3 - d0_Gamma_4_x*w_4_t_6 - d0_alpha_5_xx*h_5_y
-    )
-    d0_c_zy = (
-    d0_Gamma_1_y*w_1_t_92 + d0_Gamma_2_y*w_2_t_4 + d0_Gamma_5_y*w_5_t_7 + d0_alpha_5_yy*h_5_x -
-        d0_Gamma_3_y*w_3_t_3 - d0_Gamma_4_y*w_4_t_6 - d0_alpha_5_xy*h_5_y
-    )
-    d0_c_zz = (
-    d0_Gamma_1_z*w_1_t_92 + d0_Gamma_2_z*w_2_t_4 + d0_Gamma_5_z*w_5_t_7 + d0_alpha_5_yz*h_5_x -
-        d0_Gamma_3_z*w_3_t_3 - d0_Gamma_4_z*w_4_t_6 - d0_alpha_5_xz*h_5_y
-    )
-    # (M2) coupling block of M
-    q_in_base_x = (
-    R_xx*rrrrrr_platform_point_x + R_xy*rrrrrr_platform_point_y + R_xz*rrrrrr_platform_point_z
-    )
-    q_in_base_y = (
-    R_yx*rrrrrr_platform_point_x + R_yy*rrrrrr_platform_point_y + R_yz*rrrrrr_platform_point_z
-    )
-    q_in_base_z = (
-    R_zx*rrrrrr_platform_point_x + R_zy*rrrrrr_platform_point_y + R_zz*rrrrrr_platform_point_z
-    )
-    M_ta_t = Q_t_13*q_in_base_z
-    M_ta_t_2 = Q_t_14*q_in_base_y
-    M_ta_t_3 = Q_t_12*q_in_base_z - Q_t_14*q_in_base_x
-    M_ta_t_4 = Q_t_12*q_in_base_y - Q_t_13*q_in_base_x
-    M_ta_t_5 = Q_t_16*q_in_base_z - Q_t_17*q_in_base_y
-    M_ta_t_6 = Q_t_17*q_in_base_x
-    M_ta_t_7 = M_ta_t - M_ta_t_6
-    M_ta_t_8 = Q_t_13*q_in_base_y - Q_t_16*q_in_base_x
-    M_ta_t_9 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y
-    M_ta_t_10 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x
-    M_ta_t_11 = M_ta_t_2 - M_ta_t_6
-    # (rrrrrr-N131) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d0_c_in_base_x = (
-    axis_x_rrrrrr_axes5_x*d0_c_xx + axis_y_rrrrrr_axes5_in_base_x*d0_c_yx +
-        axis_z_rrrrrr_axes5_in_base_x*d0_c_zx
-    )
-    d0_c_in_base_y = (
-    axis_x_rrrrrr_axes5_y*d0_c_xx + axis_y_rrrrrr_axes5_in_base_y*d0_c_yx +
-        axis_z_rrrrrr_axes5_in_base_y*d0_c_zx
-    )
-    d0_c_in_base_z = (
-    axis_x_rrrrrr_axes5_z*d0_c_xx + axis_y_rrrrrr_axes5_in_base_z*d0_c_yx +
-        axis_z_rrrrrr_axes5_in_base_z*d0_c_zx
-    )
-    d0_c_in_base_x_2 = (
-    axis_x_rrrrrr_axes5_x*d0_c_xy + axis_y_rrrrrr_axes5_in_base_x*d0_c_yy +
-        axis_z_rrrrrr_axes5_in_base_x*d0_c_zy
-    )
-    d0_c_in_base_y_2 = (
-    axis_x_rrrrrr_axes5_y*d0_c_xy + axis_y_rrrrrr_axes5_in_base_y*d0_c_yy +
-        axis_z_rrrrrr_axes5_in_base_y*d0_c_zy
-    )
-    d0_c_in_base_z_2 = (
-    axis_x_rrrrrr_axes5_z*d0_c_xy + axis_y_rrrrrr_axes5_in_base_z*d0_c_yy +
-        axis_z_rrrrrr_axes5_in_base_z*d0_c_zy
-    )
-    d0_c_in_base_x_3 = (
-    axis_x_rrrrrr_axes5_x*d0_c_xz + axis_y_rrrrrr_axes5_in_base_x*d0_c_yz +
-        axis_z_rrrrrr_axes5_in_base_x*d0_c_zz
-    )
-    d0_c_in_base_y_3 = (
-    axis_x_rrrrrr_axes5_y*d0_c_xz + axis_y_rrrrrr_axes5_in_base_y*d0_c_yz +
-        axis_z_rrrrrr_axes5_in_base_y*d0_c_zz
-    )
-    d0_c_in_base_z_3 = (
-    axis_x_rrrrrr_axes5_z*d0_c_xz + axis_y_rrrrrr_axes5_in_base_z*d0_c_yz +
-        axis_z_rrrrrr_axes5_in_base_z*d0_c_zz
-    )
-    d0_c_in_base_y_4 = (
-    axis_x_rrrrrr_axes5_y*d0_c_in_base_x + axis_y_rrrrrr_axes5_in_base_y*d0_c_in_base_x_2 +
-        axis_z_rrrrrr_axes5_in_base_y*d0_c_in_base_x_3
-    )
-    d0_c_in_base_z_4 = (
-    axis_x_rrrrrr_axes5_z*d0_c_in_base_x + axis_y_rrrrrr_axes5_in_base_z*d0_c_in_base_x_2 +
-        axis_z_rrrrrr_axes5_in_base_z*d0_c_in_base_x_3
-    )
-    d0_c_in_base_x_4 = (
-    axis_x_rrrrrr_axes5_x*d0_c_in_base_y + axis_y_rrrrrr_axes5_in_base_x*d0_c_in_base_y_2 +
-        axis_z_rrrrrr_axes5_in_base_x*d0_c_in_base_y_3
-    )
-    d0_c_in_base_y_5 = (
-    axis_x_rrrrrr_axes5_y*d0_c_in_base_y + axis_y_rrrrrr_axes5_in_base_y*d0_c_in_base_y_2 +
-        axis_z_rrrrrr_axes5_in_base_y*d0_c_in_base_y_3
-    )
-    d0_c_in_base_z_5 = (
-    axis_x_rrrrrr_axes5_z*d0_c_in_base_y + axis_y_rrrrrr_axes5_in_base_z*d0_c_in_base_y_2 +
-        axis_z_rrrrrr_axes5_in_base_z*d0_c_in_base_y_3
-    )
-    d0_c_in_base_x_5 = (
-    axis_x_rrrrrr_axes5_x*d0_c_in_base_z + axis_y_rrrrrr_axes5_in_base_x*d0_c_in_base_z_2 +
-        axis_z_rrrrrr_axes5_in_base_x*d0_c_in_base_z_3
-    )
-    d0_c_in_base_y_6 = (
-    axis_x_rrrrrr_axes5_y*d0_c_in_base_z + axis_y_rrrrrr_axes5_in_base_y*d0_c_in_base_z_2 +
-        axis_z_rrrrrr_axes5_in_base_y*d0_c_in_base_z_3
-    )
-    d0_c_in_base_z_6 = (
-    axis_x_rrrrrr_axes5_z*d0_c_in_base_z + axis_y_rrrrrr_axes5_in_base_z*d0_c_in_base_z_2 +
-        axis_z_rrrrrr_axes5_in_base_z*d0_c_in_base_z_3
-    )
-    # (M2) coupling block of M
-    M_ta_t_12 = (
-    M_ta_t - M_ta_t_2 - axis_x_rrrrrr_axes5_x*d0_c_in_base_x -
-        axis_y_rrrrrr_axes5_in_base_x*d0_c_in_base_x_2 -
-        axis_z_rrrrrr_axes5_in_base_x*d0_c_in_base_x_3
-    )
-    M_ta_t_13 = M_ta_t_3 + d0_c_in_base_y_4
-    M_ta_t_14 = M_ta_t_4 - d0_c_in_base_z_4
-    M_ta_t_15 = M_ta_t_5 - d0_c_in_base_x_4
-    M_ta_t_16 = M_ta_t_7 + d0_c_in_base_y_5
-    M_ta_t_17 = M_ta_t_8 - d0_c_in_base_z_5
-    M_ta_t_18 = M_ta_t_9 - d0_c_in_base_x_5
-    M_ta_t_19 = M_ta_t_10 + d0_c_in_base_y_6
-    M_ta_t_20 = M_ta_t_11 - d0_c_in_base_z_6
-    # (rrrrrr-N119) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-    d0_G_m1_x = (
-    d0_Gamma_2_x*w_2_t_5 + d0_Gamma_3_x*w_3_t_4 + d0_Gamma_4_x*w_4_t_7 - d0_Gamma_1_x*w_1_t_93 -
-        d0_Gamma_5_x*w_5_t_8
-    )
-    d0_G_m1_y = (
-    d0_Gamma_2_y*w_2_t_5 + d0_Gamma_3_y*w_3_t_4 + d0_Gamma_4_y*w_4_t_7 - d0_Gamma_1_y*w_1_t_93 -
-        d0_Gamma_5_y*w_5_t_8
-    )
-    d0_G_m1_z = (
-    d0_Gamma_2_z*w_2_t_5 + d0_Gamma_3_z*w_3_t_4 + d0_Gamma_4_z*w_4_t_7 - d0_Gamma_1_z*w_1_t_93 -
-        d0_Gamma_5_z*w_5_t_8
-    )
-    # (rrrrrr-N123) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
-    d0_G_m2_x = (
-    d0_Gamma_2_x*w_2_t_6 + d0_Gamma_3_x*w_3_t_5 + d0_Gamma_4_x*w_4_t_8 - d0_Gamma_1_x*w_1_t_94 -
-        d0_Gamma_5_x*w_5_t_9
-    )
-    d0_G_m2_y = (
-    d0_Gamma_2_y*w_2_t_6 + d0_Gamma_3_y*w_3_t_5 + d0_Gamma_4_y*w_4_t_8 - d0_Gamma_1_y*w_1_t_94 -
-        d0_Gamma_5_y*w_5_t_9
-    )
-    d0_G_m2_z = (
-    d0_Gamma_2_z*w_2_t_6 + d0_Gamma_3_z*w_3_t_5 + d0_Gamma_4_z*w_4_t_8 - d0_Gamma_1_z*w_1_t_94 -
-        d0_Gamma_5_z*w_5_t_9
-    )
-    # (rrrrrr-N120) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-    d_G_m1_x = (
-    d_Gamma_2_x*w_2_t_5 + d_Gamma_3_x*w_3_t_4 + d_Gamma_4_x*w_4_t_7 - d_Gamma_1_x*w_1_t_93 -
-        d_Gamma_5_x*w_5_t_8
-    )
-    d_G_m1_y = (
-    d_Gamma_2_y*w_2_t_5 + d_Gamma_3_y*w_3_t_4 + d_Gamma_4_y*w_4_t_7 - d_Gamma_1_y*w_1_t_93 -
-        d_Gamma_5_y*w_5_t_8
-    )
-    d_G_m1_z = (
-    d_Gamma_2_z*w_2_t_5 + d_Gamma_3_z*w_3_t_4 + d_Gamma_4_z*w_4_t_7 - d_Gamma_1_z*w_1_t_93 -
-        d_Gamma_5_t_6*w_5_t_8
-    )
-    # (rrrrrr-N124) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
-    d_G_m2_x = (
-    d_Gamma_2_x*w_2_t_6 + d_Gamma_3_x*w_3_t_5 + d_Gamma_4_x*w_4_t_8 - d_Gamma_1_x*w_1_t_94 -
-        d_Gamma_5_x*w_5_t_9
-    )
-    d_G_m2_y = (
-    d_Gamma_2_y*w_2_t_6 + d_Gamma_3_y*w_3_t_5 + d_Gamma_4_y*w_4_t_8 - d_Gamma_1_y*w_1_t_94 -
-        d_Gamma_5_y*w_5_t_9
-    )
-    d_G_m2_z = (
-    d_Gamma_2_z*w_2_t_6 + d_Gamma_3_z*w_3_t_5 + d_Gamma_4_z*w_4_t_8 - d_Gamma_1_z*w_1_t_94 -
-        d_Gamma_5_t_6*w_5_t_9
-    )
-    # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
-    n_m1_in_base_x = axis_y_rrrrrr_axes5_in_base_x*end_p1_r8_x - axis_x_rrrrrr_axes5_x*end_p1_r8_y
-    n_m1_in_base_y = axis_y_rrrrrr_axes5_in_base_y*end_p1_r8_x - axis_x_rrrrrr_axes5_y*end_p1_r8_y
-    n_m1_in_base_z = axis_y_rrrrrr_axes5_in_base_z*end_p1_r8_x - axis_x_rrrrrr_axes5_z*end_p1_r8_y
-    # (rrrrrr-N120) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-    d_G_m1_in_base_x = (
-    axis_x_rrrrrr_axes5_x*d_G_m1_x + axis_y_rrrrrr_axes5_in_base_x*d_G_m1_y +
-        axis_z_rrrrrr_axes5_in_base_x*d_G_m1_z
-    )
-    d_G_m1_in_base_y = (
-    axis_x_rrrrrr_axes5_y*d_G_m1_x + axis_y_rrrrrr_axes5_in_base_y*d_G_m1_y +
-        axis_z_rrrrrr_axes5_in_base_y*d_G_m1_z
-    )
-    d_G_m1_in_base_z = (
-    axis_x_rrrrrr_axes5_z*d_G_m1_x + axis_y_rrrrrr_axes5_in_base_z*d_G_m1_y +
-        axis_z_rrrrrr_axes5_in_base_z*d_G_m1_z
-    )
-    # (rrrrrr-V12) direction 2 of the moment that the platform joint transmits
-    n_m2_in_base_x = (
-    axis_z_rrrrrr_axes5_in_base_x*end_p1_r8_y - axis_y_rrrrrr_axes5_in_base_x*end_p1_r6_x
-    )
-    n_m2_in_base_y = (
-    axis_z_rrrrrr_axes5_in_base_y*end_p1_r8_y - axis_y_rrrrrr_axes5_in_base_y*end_p1_r6_x
-    )
-    n_m2_in_base_z = (
-    axis_z_rrrrrr_axes5_in_base_z*end_p1_r8_y - axis_y_rrrrrr_axes5_in_base_z*end_p1_r6_x
-    )
-    # (rrrrrr-N124) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
-    d_G_m2_in_base_x = (
-    axis_x_rrrrrr_axes5_x*d_G_m2_x + axis_y_rrrrrr_axes5_in_base_x*d_G_m2_y +
-        axis_z_rrrrrr_axes5_in_base_x*d_G_m2_z
-    )
-    d_G_m2_in_base_y = (
-    axis_x_rrrrrr_axes5_y*d_G_m2_x + axis_y_rrrrrr_axes5_in_base_y*d_G_m2_y +
-        axis_z_rrrrrr_axes5_in_base_y*d_G_m2_z
-    )
-    d_G_m2_in_base_z = (
-    axis_x_rrrrrr_axes5_z*d_G_m2_x + axis_y_rrrrrr_axes5_in_base_z*d_G_m2_y +
-        axis_z_rrrrrr_axes5_in_base_z*d_G_m2_z
-    )
-    # (rrrrrr-N128) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-    d_G_m_xx = d_G_m1_in_base_x*n_m1_in_base_x + d_G_m2_in_base_x*n_m2_in_base_x
-    d_G_m_xy = d_G_m1_in_base_y*n_m1_in_base_x + d_G_m2_in_base_y*n_m2_in_base_x
-    d_G_m_xz = d_G_m1_in_base_z*n_m1_in_base_x + d_G_m2_in_base_z*n_m2_in_base_x
-    d_G_m_yx = d_G_m1_in_base_x*n_m1_in_base_y + d_G_m2_in_base_x*n_m2_in_base_y
-    # (rrrrrr-N119) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-    d0_G_m1_in_base_y = (
-    axis_x_rrrrrr_axes5_y*d0_G_m1_x + axis_y_rrrrrr_axes5_in_base_y*d0_G_m1_y +
-        axis_z_rrrrrr_axes5_in_base_y*d0_G_m1_z
-    )
-    d0_G_m1_in_base_z = (
-    axis_x_rrrrrr_axes5_z*d0_G_m1_x + axis_y_rrrrrr_axes5_in_base_z*d0_G_m1_y +
-        axis_z_rrrrrr_axes5_in_base_z*d0_G_m1_z
-    )
-    # (rrrrrr-N123) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
-    d0_G_m2_in_base_y = (
-    axis_x_rrrrrr_axes5_y*d0_G_m2_x + axis_y_rrrrrr_axes5_in_base_y*d0_G_m2_y +
-        axis_z_rrrrrr_axes5_in_base_y*d0_G_m2_z
-    )
-    d0_G_m2_in_base_z = (
-    axis_x_rrrrrr_axes5_z*d0_G_m2_x + axis_y_rrrrrr_axes5_in_base_z*d0_G_m2_y +
-        axis_z_rrrrrr_axes5_in_base_z*d0_G_m2_z
-    )
-    # (M3) rotational block of M
-    M_aa_t = (
-    M_ta_t_5*q_in_base_z + d0_c_in_base_x_5*q_in_base_y + d_G_m_xy*q_in_base_z -
-        M_ta_t_9*q_in_base_y - d0_c_in_base_x_4*q_in_base_z - d_G_m_xz*q_in_base_y -
-        n_m1_in_base_x*(axis_x_rrrrrr_axes5_x*d0_G_m1_x + axis_y_rrrrrr_axes5_in_base_x*d0_G_m1_y
-        + axis_z_rrrrrr_axes5_in_base_x*d0_G_m1_z) -
-        n_m2_in_base_x*(axis_x_rrrrrr_axes5_x*d0_G_m2_x + axis_y_rrrrrr_axes5_in_base_x*d0_G_m2_y
-        + axis_z_rrrrrr_axes5_in_base_x*d0_G_m2_z)
-    )
-    M_aa_t_2 = (
-    M_ta_t_7*q_in_base_z + d0_G_m1_in_base_y*n_m1_in_base_x + d0_G_m2_in_base_y*n_m2_in_base_x +
-        d0_c_in_base_y_5*q_in_base_z + d_G_m_xx*q_in_base_z - M_ta_t_10*q_in_base_y -
-        d0_c_in_base_y_6*q_in_base_y - d_G_m_xz*q_in_base_x
-    )
-    M_aa_t_3 = (
-    M_ta_t_11*q_in_base_y + d0_G_m1_in_base_z*n_m1_in_base_x + d0_G_m2_in_base_z*n_m2_in_base_x +
-        d0_c_in_base_z_5*q_in_base_z + d_G_m_xy*q_in_base_x - M_ta_t_8*q_in_base_z -
-        d0_c_in_base_z_6*q_in_base_y - d_G_m_xx*q_in_base_y
-    )
-    M_aa_t_4 = (
-    M_ta_t_3*q_in_base_z + d0_c_in_base_y_4*q_in_base_z +
-        q_in_base_x*(d_G_m1_in_base_z*n_m1_in_base_y + d_G_m2_in_base_z*n_m2_in_base_y) -
-        M_ta_t_10*q_in_base_x - d0_G_m1_in_base_y*n_m1_in_base_y -
-        d0_G_m2_in_base_y*n_m2_in_base_y - d0_c_in_base_y_6*q_in_base_x - d_G_m_yx*q_in_base_z
-    )
-    M_aa_t_5 = (
-    M_ta_t_4*q_in_base_z + d0_G_m1_in_base_z*n_m1_in_base_y + d0_G_m2_in_base_z*n_m2_in_base_y +
-        d0_c_in_base_z_6*q_in_base_x + q_in_base_x*(d_G_m1_in_base_y*n_m1_in_base_y +
-        d_G_m2_in_base_y*n_m2_in_base_y) - M_ta_t_11*q_in_base_x - d0_c_in_base_z_4*q_in_base_z -
-        d_G_m_yx*q_in_base_y
-    )
-    M_aa_t_6 = (
-    M_ta_t_4*q_in_base_y + d0_c_in_base_z_5*q_in_base_x +
-        q_in_base_y*(d_G_m1_in_base_x*n_m1_in_base_z + d_G_m2_in_base_x*n_m2_in_base_z) -
-        M_ta_t_8*q_in_base_x - d0_G_m1_in_base_z*n_m1_in_base_z - d0_G_m2_in_base_z*n_m2_in_base_z
-        - d0_c_in_base_z_4*q_in_base_y - q_in_base_x*(d_G_m1_in_base_y*n_m1_in_base_z +
-        d_G_m2_in_base_y*n_m2_in_base_z)
-    )
-    # (rrrrrr-V1) velocity of the connection point
-    S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-    S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-    S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-    S_dot_x = S_dot_t + t_dot_x
-    S_dot_y = S_dot_t_2 + t_dot_y
-    S_dot_z = S_dot_t_3 + t_dot_z
-    # (rrrrrr-V33) rate at which the joints turn along moment direction 1
-    eta_1 = n_m1_in_base_x*omega_x + n_m1_in_base_y*omega_y + n_m1_in_base_z*omega_z
-    # (rrrrrr-V34) rate at which the joints turn along moment direction 2
-    eta_2 = n_m2_in_base_x*omega_x + n_m2_in_base_y*omega_y + n_m2_in_base_z*omega_z
-    # (rrrrrr-V1) velocity of the connection point
-    S_dot_tip_x = (
-    S_dot_x*axis_x_rrrrrr_axes5_x + S_dot_y*axis_x_rrrrrr_axes5_y + S_dot_z*axis_x_rrrrrr_axes5_z
-    )
-    S_dot_tip_y = (
-    S_dot_x*axis_y_rrrrrr_axes5_in_base_x + S_dot_y*axis_y_rrrrrr_axes5_in_base_y +
-        S_dot_z*axis_y_rrrrrr_axes5_in_base_z
-    )
-    S_dot_tip_z = (
-    S_dot_x*axis_z_rrrrrr_axes5_in_base_x + S_dot_y*axis_z_rrrrrr_axes5_in_base_y +
-        S_dot_z*axis_z_rrrrrr_axes5_in_base_z
-    )
-    # (rrrrrr-V35) rate of joint 1
-    qd_1_t = eta_1*size
-    qd_1_t_2 = eta_2*size
-    qd_1_t_3 = (
-    inv_w_1_t_222*(S_dot_tip_x*w_1_t_83 + S_dot_tip_z*w_1_t_85 + qd_1_t*w_1_t_86 +
-        qd_1_t_2*w_1_t_87 - S_dot_tip_y*w_1_t_84)
-    )
-    qd_1_t_4 = (
-    inv_w_1_t_194*(S_dot_tip_x*w_1_t_71 + S_dot_tip_z*w_1_t_73 + qd_1_t*w_1_t_74 +
-        qd_1_t_2*w_1_t_75 - S_dot_tip_y*w_1_t_72 - qd_1_t_3*w_1_t_76)
-    )
-    qd_1_t_5 = (
-    inv_w_1_t_150*(S_dot_tip_y*w_1_t_54 + qd_1_t_3*w_1_t_64 + qd_1_t_4*w_1_t_58 -
-        S_dot_tip_x*w_1_t_53 - S_dot_tip_z*w_1_t_55 - qd_1_t*w_1_t_56 - qd_1_t_2*w_1_t_57)
-    )
-    qd_1_t_6 = (
-    inv_w_1_t_101*(S_dot_tip_z*w_1_t_33 + qd_1_t*w_1_t_34 + qd_1_t_2*w_1_t_35 + qd_1_t_3*w_1_t_47
-        + qd_1_t_4*w_1_t_42 - S_dot_tip_y*w_1_t_32 - qd_1_t_5*w_1_t_36)
-    )
-    qd_1_t_7 = (
-    inv_w_1_t_69*(S_dot_tip_y*w_1_t_16 + qd_1_t_2*w_1_t_17 + qd_1_t_3*w_1_t_28 + qd_1_t_5*w_1_t_21
-        - qd_1_t_4*w_1_t_25 - qd_1_t_6*w_1_t_18)
-    )
-    # (rrrrrr-V40) angular velocity of link 1
-    omega_1_t = qd_1_t_5*s_2
-    omega_1_t_2 = c_2_t*qd_1_t_5
-    # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_x = omega_1_t_2*qd_1_t_4
-    zeta_2_y = omega_1_t*qd_1_t_4
-    # (rrrrrr-V42) angular velocity of link 2
-    omega_2_r0_x = omega_1_t_2*s_3 - c_3*omega_1_t
-    omega_2_r0_y = c_3*omega_1_t_2 + omega_1_t*s_3
-    # (rrrrrr-A5) angular acceleration of link 3 from the turning of axis 3
-    zeta_3_x = omega_2_r0_y*qd_1_t_3
-    zeta_3_y = omega_2_r0_x*qd_1_t_3
-    # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_r0_x = c_3*zeta_2_x + s_3*zeta_2_y
-    zeta_2_r0_y = c_3*zeta_2_y - s_3*zeta_2_x
-    # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
-    beta_3_x = zeta_2_r0_x + zeta_3_x
-    beta_3_y = zeta_2_r0_y - zeta_3_y
-    # (rrrrrr-V44) angular velocity of link 3
-    omega_3_z = qd_1_t_3 + qd_1_t_4
-    omega_3_r1_x = omega_3_z*s_4 - c_4_t*omega_2_r0_y
-    omega_3_r1_y = -c_4_t*omega_3_z - omega_2_r0_y*s_4
-    # (rrrrrr-A7) angular acceleration of link 4 from the turning of axis 4
-    zeta_4_x = omega_3_r1_y*qd_1_t_6
-    zeta_4_y = omega_3_r1_x*qd_1_t_6
-    # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
-    beta_3_t = beta_3_y*c_4_t
-    beta_3_t_2 = beta_3_y*s_4
-    # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
-    beta_4_x = zeta_4_x - beta_3_t
-    beta_4_y = -beta_3_t_2 - zeta_4_y
-    # (rrrrrr-V46) angular velocity of link 4
-    omega_4_z = omega_2_r0_x + qd_1_t_6
-    omega_4_t = c_5_t*omega_3_r1_y
-    omega_4_r1_x = omega_4_z*s_5 - omega_4_t
-    omega_4_t_2 = omega_3_r1_y*s_5
-    omega_4_r1_y = -omega_4_t_2 - c_5_t*omega_4_z
-    # (rrrrrr-A9) angular acceleration of link 5 from the turning of axis 5
-    zeta_5_x = omega_4_r1_y*qd_1_t_7
-    zeta_5_y = omega_4_r1_x*qd_1_t_7
-    # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
-    beta_4_t = beta_3_x*s_5
-    beta_4_r1_x = beta_4_t - beta_4_y*c_5_t
-    beta_4_t_2 = beta_3_x*c_5_t
-    beta_4_r1_y = -beta_4_t_2 - beta_4_y*s_5
-    # (rrrrrr-A10) angular acceleration of link 5 at zero joint accelerations
-    beta_5_x = beta_4_r1_x + zeta_5_x
-    beta_5_y = beta_4_r1_y - zeta_5_y
-    # (rrrrrr-V48) angular velocity of link 5
-    omega_5_z = omega_3_r1_x + qd_1_t_7
-    # (rrrrrr-A14) rate of moment direction 1
-    nd_m1_t = end_p1_r8_y*omega_4_r1_y
-    omega_tip_x = (
-    axis_x_rrrrrr_axes5_x*omega_x + axis_x_rrrrrr_axes5_y*omega_y + axis_x_rrrrrr_axes5_z*omega_z
-    )
-    omega_tip_y = (
-    axis_y_rrrrrr_axes5_in_base_x*omega_x + axis_y_rrrrrr_axes5_in_base_y*omega_y +
-        axis_y_rrrrrr_axes5_in_base_z*omega_z
-    )
-    omega_tip_z = (
-    axis_z_rrrrrr_axes5_in_base_x*omega_x + axis_z_rrrrrr_axes5_in_base_y*omega_y +
-        axis_z_rrrrrr_axes5_in_base_z*omega_z
-    )
-    nd_m1_t_2 = end_p1_r8_x*omega_tip_z - end_p1_r6_x*omega_tip_x
-    nd_m1_x = -nd_m1_t_2 - end_p1_r6_x*omega_4_r1_x
-    nd_m1_y = end_p1_r6_x*omega_tip_y - end_p1_r6_x*omega_4_r1_y - end_p1_r8_y*omega_tip_z
-    # (rrrrrr-A15) bias of the angular acceleration along moment direction 1
-    nu_1_t = beta_5_x*end_p1_r8_y - beta_5_y*end_p1_r8_x
-    nu_1_t_2 = omega_4_r1_x - omega_tip_x
-    nu_1_t_3 = omega_4_r1_y - omega_tip_y
-    nu_1_t_4 = omega_5_z - omega_tip_z
-    nu_1_t_5 = nd_m1_x*nu_1_t_2 + nd_m1_y*nu_1_t_3 + nu_1_t_4*(nd_m1_t + end_p1_r8_x*omega_4_r1_x)
-    nu_1 = nu_1_t - nu_1_t_5
-    # (rrrrrr-A16) rate of moment direction 2
-    nd_m2_y = end_p1_r8_x*omega_tip_y - end_p1_r8_x*omega_4_r1_y - end_p1_r8_y*omega_tip_x
-    nd_m2_z = nd_m1_t_2 - end_p1_r8_x*omega_5_z
-    # (rrrrrr-A17) bias of the angular acceleration along moment direction 2
-    nu_2_t = beta_5_y*end_p1_r6_x - beta_4_x*end_p1_r8_y
-    nu_2_t_2 = nd_m2_y*nu_1_t_3 + nd_m2_z*nu_1_t_4 + nu_1_t_2*(nd_m1_t + end_p1_r6_x*omega_5_z)
-    nu_2 = nu_2_t - nu_2_t_2
-    # (rrrrrr-V43) centripetal tensor of link 2
-    W_2_t = omega_1_t*omega_1_t
-    W_2_t_2 = omega_1_t_2*omega_1_t_2
-    W_2_t_3 = qd_1_t_4*qd_1_t_4
-    W_2_xy = omega_1_t*omega_1_t_2
-    # (rrrrrr-V45) centripetal tensor of link 3
-    W_3_t = omega_2_r0_x*omega_2_r0_x
-    W_3_t_2 = omega_2_r0_y*omega_2_r0_y
-    W_3_t_3 = omega_3_z*omega_3_z
-    W_3_xx = W_3_t_2 + W_3_t_3
-    W_3_xy = omega_2_r0_x*omega_2_r0_y
-    W_3_xz = omega_2_r0_x*omega_3_z
-    W_3_yz = omega_2_r0_y*omega_3_z
-    # (rrrrrr-V47) centripetal tensor of link 4
-    W_4_t = omega_3_r1_x*omega_3_r1_x
-    W_4_t_2 = omega_3_r1_y*omega_3_r1_y
-    W_4_t_3 = omega_4_z*omega_4_z
-    W_4_xy = omega_3_r1_x*omega_3_r1_y
-    W_4_xz = omega_3_r1_x*omega_4_z
-    W_4_yz = omega_3_r1_y*omega_4_z
-    # (rrrrrr-V49) centripetal tensor of link 5
-    W_5_t = omega_4_r1_x*omega_4_r1_x
-    W_5_t_2 = omega_4_r1_y*omega_4_r1_y
-    W_5_t_3 = omega_5_z*omega_5_z
-    W_5_xx = W_5_t_2 + W_5_t_3
-    W_5_xy = omega_4_r1_x*omega_4_r1_y
-    W_5_xz = omega_4_r1_x*omega_5_z
-    W_5_yz = omega_4_r1_y*omega_5_z
-    # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-    bias_t = rrrrrr_joint2_offset_x*s_2
-    bias_t_2 = c_2_t*rrrrrr_joint2_offset_x
-    d_2_r2_x = bias_t*c_3 - bias_t_2*s_3
-    d_2_r2_y = -bias_t*s_3 - bias_t_2*c_3
-    bias_t_3 = c_4_t*d_2_r2_y
-    bias_t_4 = d_2_r2_y*s_4
-    d_2_r6_x = bias_t_4*c_5_t + d_2_r2_x*s_5
-    d_2_r6_y = bias_t_4*s_5 - c_5_t*d_2_r2_x
-    # (rrrrrr-V40) angular velocity of link 1
-    omega_1_x = e_1_r6_x*qd_1_t_5
-    omega_1_y = e_1_r6_y*qd_1_t_5
-    omega_1_z = qd_1_t_5*v_1_t
-    # (rrrrrr-V41) centripetal tensor of link 1
-    W_1_t = omega_1_x*omega_1_x
-    W_1_t_2 = omega_1_y*omega_1_y
-    W_1_t_3 = omega_1_z*omega_1_z
-    W_1_xy = omega_1_x*omega_1_y
-    W_1_xz = omega_1_x*omega_1_z
-    W_1_yz = omega_1_y*omega_1_z
-    # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-    bias_t_5 = c_3*rrrrrr_joint3_offset_x
-    bias_t_6 = rrrrrr_joint3_offset_x*s_3
-    bias_t_7 = bias_t_6*c_4_t
-    bias_t_8 = bias_t_6*s_4
-    d_3_r4_x = bias_t_5*s_5 - bias_t_8*c_5_t
-    d_3_r4_y = -bias_t_5*c_5_t - bias_t_8*s_5
-    # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_t = c_4_t*zeta_2_r0_y
-    zeta_2_t_2 = s_4*zeta_2_r0_y
-    zeta_2_r4_x = c_5_t*zeta_2_t_2 + s_5*zeta_2_r0_x
-    zeta_2_r4_y = s_5*zeta_2_t_2 - c_5_t*zeta_2_r0_x
-    # (rrrrrr-V42) angular velocity of link 2
-    omega_2_x = qd_1_t_4*v_2_t - omega_1_x
-    omega_2_y = qd_1_t_4*v_2_t_2 - omega_1_y
-    omega_2_z = omega_1_z + qd_1_t_4*s_4
-    # (rrrrrr-V43) centripetal tensor of link 2
-    W_2_t_4 = omega_2_x*omega_2_x
-    W_2_t_5 = omega_2_y*omega_2_y
-    W_2_t_6 = omega_2_z*omega_2_z
-    W_2_xy_2 = omega_2_x*omega_2_y
-    W_2_xz = omega_2_x*omega_2_z
-    W_2_yz = omega_2_y*omega_2_z
-    # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-    bias_t_9 = rrrrrr_joint4_offset_x*s_5
-    bias_t_10 = c_5_t*rrrrrr_joint4_offset_x
-    # (rrrrrr-V44) angular velocity of link 3
-    omega_3_r3_x = omega_2_r0_x*s_5 - omega_4_t
-    omega_3_r3_y = -omega_4_t_2 - c_5_t*omega_2_r0_x
-    # (rrrrrr-V45) centripetal tensor of link 3
-    W_3_xy_2 = omega_3_r3_x*omega_3_r3_y
-    # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-    bias_t_11 = rrrrrr_joint5_offset_x*s_5
-    bias_t_12 = c_5_t*rrrrrr_joint5_offset_x
-    bias_t_13 = W_5_xy + beta_4_x
-    bias_x = (
-    W_1_xy*d_2_r6_y + W_1_xz*bias_t_3 + bias_t_7*(W_2_xz + zeta_2_r4_y) + d_3_r4_y*(W_2_xy_2 +
-        zeta_2_t) - W_5_xx*rrrrrr_platform_joint_offset_x - bias_t_10*(W_3_xy_2 + beta_3_t) -
-        bias_t_11*(W_4_t + W_5_t_2) - bias_t_12*(W_5_xy - beta_4_x) - bias_t_9*(W_4_t +
-        omega_3_r3_y*omega_3_r3_y) - d_2_r6_x*(W_1_t_2 + W_1_t_3) - d_3_r4_x*(W_2_t_5 + W_2_t_6)
-    )
-    bias_y = (
-    W_1_xy*d_2_r6_x + W_1_yz*bias_t_3 + bias_t_10*(W_4_t + omega_3_r3_x*omega_3_r3_x) +
-        bias_t_11*bias_t_13 + bias_t_12*(W_4_t + W_5_t) + bias_t_13*rrrrrr_platform_joint_offset_x
-        + bias_t_7*(W_2_yz - zeta_2_r4_x) + bias_t_9*(W_3_xy_2 - beta_3_t) + d_3_r4_x*(W_2_xy_2 -
-        zeta_2_t) - d_2_r6_y*(W_1_t + W_1_t_3) - d_3_r4_y*(W_2_t_4 + W_2_t_6)
-    )
-    bias_z = (
-    bias_t_11*(omega_3_r1_x*omega_4_r1_x - beta_4_r1_y) + bias_t_3*(W_1_t + W_1_t_2) +
-        bias_t_9*(beta_4_t_2 + omega_3_r1_x*omega_3_r3_x - beta_3_t_2*s_5) + d_3_r4_x*(W_2_xz -
-        zeta_2_r4_y) + d_3_r4_y*(W_2_yz + zeta_2_r4_x) + rrrrrr_platform_joint_offset_x*(W_5_xz -
-        beta_5_y) - W_1_xz*d_2_r6_x - W_1_yz*d_2_r6_y - bias_t_10*(beta_4_t + beta_3_t_2*c_5_t +
-        omega_3_r1_x*omega_3_r3_y) - bias_t_12*(beta_4_r1_x + omega_3_r1_x*omega_4_r1_y) -
-        bias_t_7*(W_2_t_4 + W_2_t_5)
-    )
-    # (rrrrrr-A1) centripetal acceleration of the connection point
-    u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z
-    u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x
-    u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y
-    u_1_tip_x = (
-    axis_x_rrrrrr_axes5_x*u_1_x + axis_x_rrrrrr_axes5_y*u_1_y + axis_x_rrrrrr_axes5_z*u_1_z
-    )
-    u_1_tip_y = (
-    axis_y_rrrrrr_axes5_in_base_x*u_1_x + axis_y_rrrrrr_axes5_in_base_y*u_1_y +
-        axis_y_rrrrrr_axes5_in_base_z*u_1_z
-    )
-    u_1_tip_z = (
-    axis_z_rrrrrr_axes5_in_base_x*u_1_x + axis_z_rrrrrr_axes5_in_base_y*u_1_y +
-        axis_z_rrrrrr_axes5_in_base_z*u_1_z
-    )
-    # (rrrrrr-A13) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-    rel_o_x = u_1_tip_x - bias_x
-    rel_o_y = u_1_tip_y - bias_y
-    rel_o_z = u_1_tip_z - bias_z
-    # (rrrrrr-A21) remainder without the acceleration in: acceleration of joint 1
-    qdd_1_o_t = nu_1*size
-    qdd_1_o_t_2 = nu_2*size
-    qdd_1_o_t_3 = (
-    inv_w_1_t_222*(qdd_1_o_t*w_1_t_86 + qdd_1_o_t_2*w_1_t_87 + rel_o_x*w_1_t_83 + rel_o_z*w_1_t_85
-        - rel_o_y*w_1_t_84)
-    )
-    qdd_1_o_t_4 = (
-    inv_w_1_t_194*(qdd_1_o_t*w_1_t_74 + qdd_1_o_t_2*w_1_t_75 + rel_o_x*w_1_t_71 + rel_o_z*w_1_t_73
-        - qdd_1_o_t_3*w_1_t_76 - rel_o_y*w_1_t_72)
-    )
-    qdd_1_o_t_5 = (
-    inv_w_1_t_150*(qdd_1_o_t_3*w_1_t_64 + qdd_1_o_t_4*w_1_t_58 + rel_o_y*w_1_t_54 -
-        qdd_1_o_t*w_1_t_56 - qdd_1_o_t_2*w_1_t_57 - rel_o_x*w_1_t_53 - rel_o_z*w_1_t_55)
-    )
-    qdd_1_o_t_6 = (
-    inv_w_1_t_101*(qdd_1_o_t*w_1_t_34 + qdd_1_o_t_2*w_1_t_35 + qdd_1_o_t_3*w_1_t_47 +
-        qdd_1_o_t_4*w_1_t_42 + rel_o_z*w_1_t_33 - qdd_1_o_t_5*w_1_t_36 - rel_o_y*w_1_t_32)
-    )
-    # (rrrrrr-A31) remainder without the acceleration in: angular acceleration of link 1
-    alpha_1_o_t = qdd_1_o_t_5*s_2
-    alpha_1_o_t_2 = c_2_t*qdd_1_o_t_5
-    # (rrrrrr-A35) remainder without the acceleration in: angular acceleration of link 2
-    alpha_2_o_x = zeta_2_x - alpha_1_o_t
-    alpha_2_o_y = alpha_1_o_t_2 + zeta_2_y
-    # (rrrrrr-A37) remainder of the acceleration tensor of link 2
-    B_2_o_xy = -W_2_xy - qdd_1_o_t_4
-    B_2_o_yx = qdd_1_o_t_4 - W_2_xy
-    B_2_o_zx = -alpha_2_o_y - zeta_2_y
-    B_2_o_zy = alpha_2_o_x + zeta_2_x
-    # (rrrrrr-A55) remainder without the acceleration in: acceleration of the origin of joint 3
-    a_o3_o_t = rrrrrr_joint3_offset_x*(W_2_t_2 + W_2_t_3)
-    a_o3_o_t_2 = B_2_o_yx*rrrrrr_joint3_offset_x
-    a_o3_o_t_3 = B_2_o_zx*rrrrrr_joint3_offset_x
-    # (rrrrrr-A39) remainder without the acceleration in: angular acceleration of link 3
-    alpha_3_o_x = zeta_3_x + alpha_2_o_x*c_3 + alpha_2_o_y*s_3
-    alpha_3_o_y = alpha_2_o_y*c_3 - zeta_3_y - alpha_2_o_x*s_3
-    alpha_3_o_z = qdd_1_o_t_3 + qdd_1_o_t_4
-    # (rrrrrr-A41) remainder of the acceleration tensor of link 3
-    B_3_o_xy = W_3_xy - alpha_3_o_z
-    B_3_o_xz = W_3_xz + alpha_3_o_y
-    B_3_o_yx = W_3_xy + alpha_3_o_z
-    B_3_o_yz = W_3_yz - alpha_3_o_x
-    B_3_o_zx = W_3_xz - alpha_3_o_y
-    B_3_o_zy = W_3_yz + alpha_3_o_x
-    # (rrrrrr-A55) remainder without the acceleration in: acceleration of the origin of joint 3
-    a_o3_o_r0_x = a_o3_o_t_2*s_3 - a_o3_o_t*c_3
-    a_o3_o_r0_y = a_o3_o_t*s_3 + a_o3_o_t_2*c_3
-    # (rrrrrr-A57) remainder without the acceleration in: acceleration of the origin of joint 4
-    a_o4_o_x = a_o3_o_r0_x - W_3_xx*rrrrrr_joint4_offset_x
-    a_o4_o_y = a_o3_o_r0_y + B_3_o_yx*rrrrrr_joint4_offset_x
-    a_o4_o_z = a_o3_o_t_3 + B_3_o_zx*rrrrrr_joint4_offset_x
-    # (rrrrrr-N16) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
-    g_r1_x = g_r0_y*s_1 - c_1_t*g_r0_x
-    g_r1_y = -c_1_t*g_r0_y - g_r0_x*s_1
-    g_r3_x = g_r0_z*s_2 - c_2_t*g_r1_y
-    g_r3_y = -c_2_t*g_r0_z - g_r1_y*s_2
-    g_r4_x = c_3*g_r3_x + g_r3_y*s_3
-    g_r4_y = c_3*g_r3_y - g_r3_x*s_3
-    g_r6_x = g_r1_x*s_4 - c_4_t*g_r4_y
-    g_r6_y = -c_4_t*g_r1_x - g_r4_y*s_4
-    acc_4_o_x = a_o4_o_z*s_4 - g_r6_x - a_o4_o_y*c_4_t
-    acc_4_o_y = -g_r6_y - a_o4_o_y*s_4 - a_o4_o_z*c_4_t
-    acc_4_o_z = a_o4_o_x - g_r4_x
-    # (rrrrrr-A43) remainder without the acceleration in: angular acceleration of link 4
-    alpha_4_o_x = zeta_4_x + alpha_3_o_z*s_4 - alpha_3_o_y*c_4_t
-    alpha_4_o_y = -zeta_4_y - alpha_3_o_y*s_4 - alpha_3_o_z*c_4_t
-    alpha_4_o_z = alpha_3_o_x + qdd_1_o_t_6
-    # (rrrrrr-A45) remainder of the acceleration tensor of link 4
-    B_4_o_xy = W_4_xy - alpha_4_o_z
-    B_4_o_xz = W_4_xz + alpha_4_o_y
-    B_4_o_yx = W_4_xy + alpha_4_o_z
-    B_4_o_yz = W_4_yz - alpha_4_o_x
-    B_4_o_zx = W_4_xz - alpha_4_o_y
-    B_4_o_zy = W_4_yz + alpha_4_o_x
-    # (rrrrrr-N73) remainder without the acceleration in: inertia moment of the links that turn with link 4, about their reference points
-    mu_4_o_x = (
-    B_4_o_yx*J_4_xz + B_4_o_zx*J_4_yz + B_4_o_zy*Sigma_4_yy - B_4_o_yz*Sigma_4_zz -
-        J_4_xy*(W_4_t_2 - W_4_t_3) - acc_4_o_y*h_4_x - acc_4_o_z*h_4_y
-    )
-    mu_4_o_y = (
-    B_4_o_xy*J_4_xy + B_4_o_xz*Sigma_4_zz + acc_4_o_x*h_4_x - B_4_o_zx*Sigma_4_xx -
-        B_4_o_zy*J_4_yz - J_4_xz*(W_4_t - W_4_t_3) - acc_4_o_z*h_4_z
-    )
-    mu_4_o_z = (
-    B_4_o_yx*Sigma_4_xx + acc_4_o_x*h_4_y + acc_4_o_y*h_4_z - B_4_o_xy*Sigma_4_yy -
-        B_4_o_xz*J_4_xy - B_4_o_yz*J_4_xz - J_4_yz*(W_4_t - W_4_t_2)
-    )
-    # (rrrrrr-N22) remainder without the acceleration in: acceleration of the reference point of link 5, less gravity
-    acc_5_o_x = u_1_tip_x + c_5_t*g_r6_y - g_r4_x*s_5
-    acc_5_o_y = u_1_tip_y + c_5_t*g_r4_x + g_r6_y*s_5
-    acc_5_o_z = u_1_tip_z - g_r6_x
-    # (rrrrrr-A49) remainder without the acceleration in: angular acceleration of link 5
-    alpha_5_o_x = zeta_5_x + alpha_4_o_z*s_5 - alpha_4_o_y*c_5_t
-    alpha_5_o_y = -zeta_5_y - alpha_4_o_y*s_5 - alpha_4_o_z*c_5_t
-    alpha_5_o_z = (
-    alpha_4_o_x + inv_w_1_t_69*(qdd_1_o_t_2*w_1_t_17 + qdd_1_o_t_3*w_1_t_28 + qdd_1_o_t_5*w_1_t_21
-        + rel_o_y*w_1_t_16 - qdd_1_o_t_4*w_1_t_25 - qdd_1_o_t_6*w_1_t_18)
-    )
-    # (rrrrrr-A51) remainder of the acceleration tensor of link 5
-    B_5_o_xy = W_5_xy - alpha_5_o_z
-    B_5_o_xz = W_5_xz + alpha_5_o_y
-    B_5_o_yx = W_5_xy + alpha_5_o_z
-    B_5_o_yz = W_5_yz - alpha_5_o_x
-    B_5_o_zx = W_5_xz - alpha_5_o_y
-    B_5_o_zy = W_5_yz + alpha_5_o_x
-    # (rrrrrr-N65) remainder without the acceleration in: inertia moment of the links that turn with link 5, about their reference points
-    mu_5_o_x = (
-    B_5_o_yx*J_5_xz + B_5_o_zy*Sigma_5_yy + J_5_yz*(W_5_t_2 - W_5_t_3) + acc_5_o_z*h_5_y -
-        B_5_o_yz*Sigma_5_zz - B_5_o_zx*J_5_xy - acc_5_o_y*h_5_z
-    )
-    mu_5_o_y = (
-    B_5_o_xz*Sigma_5_zz + B_5_o_zy*J_5_xy + acc_5_o_x*h_5_z - B_5_o_xy*J_5_yz -
-        B_5_o_zx*Sigma_5_xx - J_5_xz*(W_5_t - W_5_t_3) - acc_5_o_z*h_5_x
-    )
-    mu_5_o_z = (
-    B_5_o_xz*J_5_yz + B_5_o_yx*Sigma_5_xx + J_5_xy*(W_5_t - W_5_t_2) + acc_5_o_y*h_5_x -
-        B_5_o_xy*Sigma_5_yy - B_5_o_yz*J_5_xz - acc_5_o_x*h_5_y
-    )
-    # (rrrrrr-N75) remainder without the acceleration in: moment about joint 4 of the links from 4 outwards, the force at the connection point left out
-    N_4_o_x = mu_4_o_x + mu_5_o_z
-    N_4_o_y = mu_4_o_y - c_5_t*mu_5_o_x - mu_5_o_y*s_5
-    N_4_o_z = mu_4_o_z + mu_5_o_x*s_5 - c_5_t*mu_5_o_y
-    # (rrrrrr-N20) remainder without the acceleration in: inertia force of link 4 less its weight
-    f_4_o_x = (
-    B_4_o_xz*h_4_x + acc_4_o_x*rrrrrr_link4_mass - B_4_o_xy*h_4_y - h_4_z*(W_4_t_2 + W_4_t_3)
-    )
-    f_4_o_y = (
-    B_4_o_yx*h_4_z + B_4_o_yz*h_4_x + acc_4_o_y*rrrrrr_link4_mass + h_4_y*(W_4_t + W_4_t_3)
-    )
-    f_4_o_z = (
-    B_4_o_zx*h_4_z + acc_4_o_z*rrrrrr_link4_mass - B_4_o_zy*h_4_y - h_4_x*(W_4_t + W_4_t_2)
-    )
-    # (rrrrrr-N10) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-    acc_3_o_x = a_o3_o_r0_x - g_r4_x
-    acc_3_o_y = a_o3_o_r0_y - g_r4_y
-    acc_3_o_z = a_o3_o_t_3 - g_r1_x
-    # (rrrrrr-N83) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-    mu_3_o_x = (
-    B_3_o_yx*J_3_xz + B_3_o_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) + acc_3_o_z*h_3_y -
-        B_3_o_yz*Sigma_3_zz - B_3_o_zx*J_3_xy - acc_3_o_y*h_3_z
-    )
-    mu_3_o_y = (
-    B_3_o_xz*Sigma_3_zz + B_3_o_zy*J_3_xy + acc_3_o_x*h_3_z - B_3_o_xy*J_3_yz -
-        B_3_o_zx*Sigma_3_xx - J_3_xz*(W_3_t - W_3_t_3) - acc_3_o_z*h_3_x
-    )
-    mu_3_o_z = (
-    B_3_o_xz*J_3_yz + B_3_o_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + acc_3_o_y*h_3_x -
-        B_3_o_xy*Sigma_3_yy - B_3_o_yz*J_3_xz - acc_3_o_x*h_3_y
-    )
-    # (rrrrrr-N20) remainder without the acceleration in: inertia force of link 4 less its weight
-    f_4_o_r0_x = -c_4_t*f_4_o_x - f_4_o_y*s_4
-    f_4_o_r0_y = f_4_o_x*s_4 - c_4_t*f_4_o_y
-    # (rrrrrr-N85) remainder without the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
-    N_3_o_x = N_4_o_z + mu_3_o_x
-    N_3_o_y = mu_3_o_y - N_4_o_x*c_4_t - N_4_o_y*s_4 - f_4_o_r0_y*rrrrrr_joint4_offset_x
-    N_3_o_z = mu_3_o_z + N_4_o_x*s_4 + f_4_o_r0_x*rrrrrr_joint4_offset_x - N_4_o_y*c_4_t
-    # (rrrrrr-N14) remainder without the acceleration in: inertia force of link 3 less its weight
-    f_3_o_x = B_3_o_xy*h_3_y + B_3_o_xz*h_3_z + acc_3_o_x*rrrrrr_link3_mass - W_3_xx*h_3_x
-    f_3_o_y = (
-    B_3_o_yx*h_3_x + B_3_o_yz*h_3_z + acc_3_o_y*rrrrrr_link3_mass - h_3_y*(W_3_t + W_3_t_3)
-    )
-    f_3_o_z = (
-    B_3_o_zx*h_3_x + B_3_o_zy*h_3_y + acc_3_o_z*rrrrrr_link3_mass - h_3_z*(W_3_t + W_3_t_2)
-    )
-    # (rrrrrr-N87) remainder without the acceleration in: inertia force of the links from 3 outwards, the last link left out
-    T_3_o_x = f_3_o_x + f_4_o_z
-    T_3_o_y = f_3_o_y + f_4_o_r0_x
-    T_3_o_z = f_3_o_z + f_4_o_r0_y
-    # (rrrrrr-N95) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-    mu_2_o_x = (
-    B_2_o_yx*J_2_xz + B_2_o_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) + g_r3_y*h_2_z -
-        B_2_o_zx*J_2_xy - Sigma_2_zz*alpha_1_o_t - g_r1_x*h_2_y
-    )
-    mu_2_o_y = (
-    B_2_o_zy*J_2_xy + Sigma_2_zz*alpha_1_o_t_2 + g_r1_x*h_2_x - B_2_o_xy*J_2_yz -
-        B_2_o_zx*Sigma_2_xx - J_2_xz*(W_2_t - W_2_t_3) - g_r3_x*h_2_z
-    )
-    mu_2_o_z = (
-    B_2_o_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + J_2_yz*alpha_1_o_t_2 + g_r3_x*h_2_y -
-        B_2_o_xy*Sigma_2_yy - J_2_xz*alpha_1_o_t - g_r3_y*h_2_x
-    )
-    # (rrrrrr-N97) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-    N_2_o_x = mu_2_o_x + N_3_o_x*c_3 - N_3_o_y*s_3
-    N_2_o_y = mu_2_o_y + N_3_o_x*s_3 + N_3_o_y*c_3 - T_3_o_z*rrrrrr_joint3_offset_x
-    N_2_o_z = N_3_o_z + mu_2_o_z + rrrrrr_joint3_offset_x*(T_3_o_x*s_3 + T_3_o_y*c_3)
-    # (rrrrrr-N107) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-    mu_1_o_z = -J_1_xx*qdd_1_o_t_5 - g_r1_x*h_1_y - g_r1_y*h_1_z
-    # (rrrrrr-N109) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-    N_1_o_z = mu_1_o_z + N_2_o_x*s_2 - N_2_o_y*c_2_t
-    # (rrrrrr-N117) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-    G_o_t = inv_w_1_t_69*mu_5_o_z
-    G_o_t_2 = inv_w_1_t_101*(G_o_t*w_1_t_18 - N_4_o_z)
-    G_o_t_3 = inv_w_1_t_150*(G_o_t*w_1_t_21 + G_o_t_2*w_1_t_36 - N_1_o_z)
-    G_o_t_4 = inv_w_1_t_194*(G_o_t*w_1_t_25 + G_o_t_2*w_1_t_42 - N_2_o_z - G_o_t_3*w_1_t_58)
-    G_o_t_5 = (
-    inv_w_1_t_222*(N_3_o_z + G_o_t*w_1_t_28 + G_o_t_3*w_1_t_64 + G_o_t_4*w_1_t_76 -
-        G_o_t_2*w_1_t_47)
-    )
-    G_o_t_6 = size*(G_o_t_2*w_1_t_34 + G_o_t_3*w_1_t_56 + G_o_t_4*w_1_t_74 - G_o_t_5*w_1_t_86)
-    G_o_t_7 = (
-    size*(G_o_t_2*w_1_t_35 + G_o_t_3*w_1_t_57 + G_o_t_4*w_1_t_75 - G_o_t*w_1_t_17 -
-        G_o_t_5*w_1_t_87)
-    )
-    # (rrrrrr-N133) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    c_o_x = (
-    G_o_t_3*w_1_t_53 + G_o_t_4*w_1_t_71 + W_5_xx*h_5_x - B_5_o_xy*h_5_y - B_5_o_xz*h_5_z -
-        G_o_t_5*w_1_t_83
-    )
-    c_o_y = (
-    G_o_t_5*w_1_t_84 + h_5_y*(W_5_t + W_5_t_3) - B_5_o_yx*h_5_x - B_5_o_yz*h_5_z - G_o_t*w_1_t_16
-        - G_o_t_2*w_1_t_32 - G_o_t_3*w_1_t_54 - G_o_t_4*w_1_t_72
-    )
-    c_o_z = (
-    G_o_t_2*w_1_t_33 + G_o_t_3*w_1_t_55 + G_o_t_4*w_1_t_73 + h_5_z*(W_5_t + W_5_t_2) -
-        B_5_o_zx*h_5_x - B_5_o_zy*h_5_y - G_o_t_5*w_1_t_85
-    )
-    # (rrrrrr-N139) velocity and gravity terms of the leg force
-    U_in_base_x = (
-    -axis_x_rrrrrr_axes5_x*c_o_x - axis_y_rrrrrr_axes5_in_base_x*c_o_y -
-        axis_z_rrrrrr_axes5_in_base_x*c_o_z
-    )
-    U_in_base_y = (
-    -axis_x_rrrrrr_axes5_y*c_o_x - axis_y_rrrrrr_axes5_in_base_y*c_o_y -
-        axis_z_rrrrrr_axes5_in_base_y*c_o_z
-    )
-    U_in_base_z = (
-    -axis_x_rrrrrr_axes5_z*c_o_x - axis_y_rrrrrr_axes5_in_base_z*c_o_y -
-        axis_z_rrrrrr_axes5_in_base_z*c_o_z
-    )
-    # (rrrrrr-N129) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-    G_m_o_t = G_o_t_6*end_p1_r8_y
-    G_m_o_t_2 = G_o_t_7*end_p1_r8_y
-    G_m_o_y = G_o_t_7*end_p1_r6_x - G_o_t_6*end_p1_r8_x
-    # (M7) rotational part of Z
-    Z_a_t = (
-    G_m_o_t*axis_x_rrrrrr_axes5_x + G_m_o_y*axis_y_rrrrrr_axes5_in_base_x +
-        U_in_base_z*q_in_base_y - G_m_o_t_2*axis_z_rrrrrr_axes5_in_base_x -
-        U_in_base_y*q_in_base_z
-    )
-    Z_a_t_2 = (
-    G_m_o_t*axis_x_rrrrrr_axes5_y + G_m_o_y*axis_y_rrrrrr_axes5_in_base_y +
-        U_in_base_x*q_in_base_z - G_m_o_t_2*axis_z_rrrrrr_axes5_in_base_y -
-        U_in_base_z*q_in_base_x
-    )
-    Z_a_t_3 = (
-    G_m_o_t*axis_x_rrrrrr_axes5_z + G_m_o_y*axis_y_rrrrrr_axes5_in_base_z +
-        U_in_base_y*q_in_base_x - G_m_o_t_2*axis_z_rrrrrr_axes5_in_base_z -
-        U_in_base_x*q_in_base_y
-    )
-    # (rrrrrr-V16) force part of reciprocal wrench 2
-    w_2_in_base_x = (
-    axis_x_rrrrrr_axes5_x*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_x*w_2_t_3 -
-        axis_z_rrrrrr_axes5_in_base_x*w_2_t_4
-    )
-    w_2_in_base_y = (
-    axis_x_rrrrrr_axes5_y*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_y*w_2_t_3 -
-        axis_z_rrrrrr_axes5_in_base_y*w_2_t_4
-    )
-    w_2_in_base_z = (
-    axis_x_rrrrrr_axes5_z*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_z*w_2_t_3 -
-        axis_z_rrrrrr_axes5_in_base_z*w_2_t_4
-    )
-    # (rrrrrr-V29) moment part of reciprocal wrench 2
-    o_2_x = n_m1_in_base_x*w_2_t_5 + n_m2_in_base_x*w_2_t_6
-    o_2_y_2 = n_m1_in_base_y*w_2_t_5 + n_m2_in_base_y*w_2_t_6
-    o_2_z = n_m1_in_base_z*w_2_t_5 + n_m2_in_base_z*w_2_t_6
-    # (M8) moment of the column's unit force about the platform origin
-    H_a_2_x = o_2_x + q_in_base_y*w_2_in_base_z - q_in_base_z*w_2_in_base_y
-    H_a_2_y = o_2_y_2 + q_in_base_z*w_2_in_base_x - q_in_base_x*w_2_in_base_z
-    H_a_2_z = o_2_z + q_in_base_x*w_2_in_base_y - q_in_base_y*w_2_in_base_x
-    ok = (abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE * size) & (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) & (abs(w_1_t_82) > _TOLERANCE * size)
-    return (
-    ok, (Q_t_12, Q_t_13, Q_t_14, Q_t_16, Q_t_17, Q_t_19, M_ta_t_12, M_ta_t_13, M_ta_t_14,
-        M_ta_t_15, M_ta_t_16, M_ta_t_17, M_ta_t_18, M_ta_t_19, M_ta_t_20, M_aa_t, M_aa_t_2,
-        M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6, U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t,
-        Z_a_t_2, Z_a_t_3,), (w_2_in_base_x, w_2_in_base_y, w_2_in_base_z, H_a_2_x, H_a_2_y,
-        H_a_2_z,),
-    )
-
-
-def _dynamics_after(c, s, t, f):
-    m_star, = c
-    (
-    h_star_in_base_x, h_star_in_base_y, h_star_in_base_z, J_star_t_8, J_star_t_9, J_star_t_10,
-        J_star_t_12, J_star_t_13, J_star_t_15, Z_p_x, Z_p_y, Z_p_z, Z_q_in_base_x, Z_q_in_base_y,
-        Z_q_in_base_z,
-    ) = s
+    sums = [0.0] * 27
+    for leg, k in legs[0]:
+        (
+        J_1_xx, J_2_xx, J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_2_zz, J_3_xx, J_3_xy, J_3_xz, J_3_yy,
+            J_3_yz, J_3_zz, J_4_xx, J_4_xy, J_4_xz, J_4_yy, J_4_yz, J_5_xx, J_5_xy, J_5_xz,
+            J_5_yy, J_5_yz, J_5_zz, Jc_2_t, Jc_3_t_2, Jc_3_t_3, Jc_4_xx, Sigma_2_xx, Sigma_2_yy,
+            Sigma_2_zz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, Sigma_4_xx, Sigma_4_yy, Sigma_4_zz,
+            Sigma_5_xx, Sigma_5_yy, Sigma_5_zz, g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x,
+            h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, h_4_x, h_4_y, h_4_z, h_5_x, h_5_y, h_5_z, hc_3_x,
+            rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz,
+            rrrrrr_base_frame_yx, rrrrrr_base_frame_yy, rrrrrr_base_frame_yz,
+            rrrrrr_base_frame_zx, rrrrrr_base_frame_zy, rrrrrr_base_frame_zz,
+            rrrrrr_joint2_offset_x, rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x,
+            rrrrrr_joint5_offset_x, rrrrrr_link3_mass, rrrrrr_link4_mass,
+            rrrrrr_platform_joint_axis_platform_x, rrrrrr_platform_joint_axis_platform_y,
+            rrrrrr_platform_joint_axis_platform_z, rrrrrr_platform_joint_offset_x,
+            rrrrrr_platform_point_x, rrrrrr_platform_point_y, rrrrrr_platform_point_z, size,
+            size_t,
+        ) = k
+        q_1 = q[[0, 5, 10, 15, 20, 25][leg]]
+        q_2 = q[[1, 6, 11, 16, 21, 26][leg]]
+        q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
+        q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
+        q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
+        # (rrrrrr-K10) cosine of the angle of joint 5 from its reference direction
+        c_5_t = sin(q_5)
+        # (rrrrrr-K11) sine of the angle of joint 5 from its reference direction
+        s_5 = cos(q_5)
+        # (rrrrrr-V2) from joint 4 to the connection point, along the links
+        r_4_t = c_5_t*rrrrrr_platform_joint_offset_x
+        r_4_z = rrrrrr_joint5_offset_x + rrrrrr_platform_joint_offset_x*s_5
+        # (rrrrrr-K8) cosine of the angle of joint 4 from its reference direction
+        c_4_t = sin(q_4)
+        # (rrrrrr-K9) sine of the angle of joint 4 from its reference direction
+        s_4 = cos(q_4)
+        # (rrrrrr-V2) from joint 4 to the connection point, along the links
+        r_4_t_2 = r_4_t*s_4
+        r_4_t_3 = c_4_t*r_4_t
+        # (rrrrrr-V3) from joint 3 to the connection point, along the links
+        r_3_x = r_4_z + rrrrrr_joint4_offset_x
+        # (rrrrrr-K6) cosine of the angle of joint 3 from its reference direction
+        c_3 = cos(q_3)
+        # (rrrrrr-K7) sine of the angle of joint 3 from its reference direction
+        s_3 = sin(q_3)
+        # (rrrrrr-V3) from joint 3 to the connection point, along the links
+        r_3_r0_y = c_3*r_4_t_2 + r_3_x*s_3
+        # (rrrrrr-V4) from joint 2 to the connection point, along the links
+        r_2_x = rrrrrr_joint3_offset_x + c_3*r_3_x - r_4_t_2*s_3
+        # (rrrrrr-K4) cosine of the angle of joint 2 from its reference direction
+        c_2_t = sin(q_2)
+        # (rrrrrr-K5) sine of the angle of joint 2 from its reference direction
+        s_2 = cos(q_2)
+        # (rrrrrr-V4) from joint 2 to the connection point, along the links
+        r_2_r0_x = -c_2_t*r_2_x - r_3_r0_y*s_2
+        # (rrrrrr-V5) from joint 1 to the connection point, along the links
+        r_1_z = rrrrrr_joint2_offset_x + r_2_x*s_2 - c_2_t*r_3_r0_y
+        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
+        e_1_r2_x = c_3*s_2 - c_2_t*s_3
+        e_1_r2_y = -c_2_t*c_3 - s_2*s_3
+        v_1_t = c_4_t*e_1_r2_y
+        v_1_t_2 = e_1_r2_y*s_4
+        e_1_r6_x = c_5_t*v_1_t_2 + e_1_r2_x*s_5
+        e_1_r6_y = s_5*v_1_t_2 - c_5_t*e_1_r2_x
+        # (rrrrrr-V5) from joint 1 to the connection point, along the links
+        r_1_r1_x = r_1_z*s_2 - c_2_t*r_2_r0_x
+        r_1_r1_y = -c_2_t*r_1_z - r_2_r0_x*s_2
+        r_1_r2_x = c_3*r_1_r1_x + r_1_r1_y*s_3
+        r_1_r2_y = c_3*r_1_r1_y - r_1_r1_x*s_3
+        r_1_t = r_4_t_3*s_4
+        r_1_r4_x = r_1_t - c_4_t*r_1_r2_y
+        r_1_t_2 = c_4_t*r_4_t_3
+        r_1_r4_y = -r_1_t_2 - r_1_r2_y*s_4
+        r_1_r6_x = r_1_r2_x*s_5 - c_5_t*r_1_r4_y
+        r_1_r6_y = -c_5_t*r_1_r2_x - r_1_r4_y*s_5
+        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
+        v_1_x = e_1_r6_y*r_1_r4_x + r_1_r6_y*v_1_t
+        v_1_y = -e_1_r6_x*r_1_r4_x - r_1_r6_x*v_1_t
+        v_1_z = e_1_r6_x*r_1_r6_y - e_1_r6_y*r_1_r6_x
+        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
+        v_2_t = c_4_t*c_5_t
+        v_2_t_2 = c_4_t*s_5
+        # (rrrrrr-V4) from joint 2 to the connection point, along the links
+        r_2_r0_x_2 = c_3*r_2_x + r_3_r0_y*s_3
+        r_2_r0_y = c_3*r_3_r0_y - r_2_x*s_3
+        r_2_r2_x = r_1_t - c_4_t*r_2_r0_y
+        r_2_r2_y = -r_1_t_2 - r_2_r0_y*s_4
+        r_2_r4_x = r_2_r0_x_2*s_5 - c_5_t*r_2_r2_y
+        r_2_r4_y = -c_5_t*r_2_r0_x_2 - r_2_r2_y*s_5
+        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
+        v_2_x = r_2_r2_x*v_2_t_2 - r_2_r4_y*s_4
+        v_2_y = r_2_r4_x*s_4 - r_2_r2_x*v_2_t
+        v_2_z = r_2_r4_y*v_2_t - r_2_r4_x*v_2_t_2
+        # (rrrrrr-V3) from joint 3 to the connection point, along the links
+        r_3_r1_x = r_1_t - c_4_t*r_4_t_2
+        r_3_r1_y = -r_1_t_2 - r_4_t_2*s_4
+        r_3_r3_x = r_3_x*s_5 - c_5_t*r_3_r1_y
+        r_3_r3_y = -c_5_t*r_3_x - r_3_r1_y*s_5
+        # (rrrrrr-V8) velocity of the connection point per rate of joint 3
+        v_3_x = r_3_r1_x*v_2_t_2 - r_3_r3_y*s_4
+        v_3_y = r_3_r3_x*s_4 - r_3_r1_x*v_2_t
+        v_3_z = r_3_r3_y*v_2_t - r_3_r3_x*v_2_t_2
+        # (rrrrrr-V9) velocity of the connection point per rate of joint 4
+        v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
+        # (rrrrrr-V13) force part of reciprocal wrench 1
+        w_1_t = c_4_t*s_3
+        w_1_t_2 = c_3*c_4_t
+        axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_2 - c_2_t*w_1_t
+        axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_2 + s_2*w_1_t
+        # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
+        c_1_t = sin(q_1)
+        # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
+        s_1 = cos(q_1)
+        # (rrrrrr-V13) force part of reciprocal wrench 1
+        axis_z_rrrrrr_axes5_r7_x = -axis_z_rrrrrr_axes5_r5_x*s_1 - c_1_t*s_4
+        axis_z_rrrrrr_axes5_r7_y = s_1*s_4 - axis_z_rrrrrr_axes5_r5_x*c_1_t
+        axis_z_rrrrrr_axes5_in_base_x = (
+        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx +
+            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy +
+            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
+        )
+        axis_z_rrrrrr_axes5_in_base_y = (
+        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx +
+            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy +
+            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
+        )
+        axis_z_rrrrrr_axes5_in_base_z = (
+        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx +
+            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy +
+            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
+        )
+        w_1_t_3 = s_4*s_5
+        axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_3
+        axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_3 - c_5_t*s_3
+        axis_y_rrrrrr_axes5_r5_x = -axis_y_rrrrrr_axes5_r4_x*c_2_t - axis_y_rrrrrr_axes5_r4_y*s_2
+        axis_y_rrrrrr_axes5_r5_y = axis_y_rrrrrr_axes5_r4_x*s_2 - axis_y_rrrrrr_axes5_r4_y*c_2_t
+        axis_y_rrrrrr_axes5_r7_x = -axis_y_rrrrrr_axes5_r5_x*s_1 - c_1_t*v_2_t_2
+        axis_y_rrrrrr_axes5_r7_y = s_1*v_2_t_2 - axis_y_rrrrrr_axes5_r5_x*c_1_t
+        axis_y_rrrrrr_axes5_in_base_x = (
+        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx +
+            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy +
+            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
+        )
+        axis_y_rrrrrr_axes5_in_base_y = (
+        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx +
+            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy +
+            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
+        )
+        axis_y_rrrrrr_axes5_in_base_z = (
+        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx +
+            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy +
+            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
+        )
+        axis_x_rrrrrr_axes5_x = (
+        axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_z -
+            axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_y
+        )
+        axis_x_rrrrrr_axes5_y = (
+        axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_x -
+            axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_z
+        )
+        axis_x_rrrrrr_axes5_z = (
+        axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_y -
+            axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_x
+        )
+        # (rrrrrr-G13) inertia tensor of link 5 about the connection point
+        J_5_t = J_5_xy*s_5
+        _x = -J_5_t - J_5_xx*c_5_t
+        J_5_t_2 = J_5_xy*c_5_t
+        _x_2 = -J_5_t_2 - J_5_yy*s_5
+        _x_3 = -J_5_xz*c_5_t - J_5_yz*s_5
+        _y = J_5_xz*s_5 - J_5_yz*c_5_t
+        # (rrrrrr-N33) inertia tensor of the links from 4 outwards about joint 4
+        Jc_4_xy = _x_3 - J_4_yz
+        Jc_4_xz = J_4_xz + _y
+        Jc_4_yy = J_4_yy - _x*c_5_t - _x_2*s_5
+        Jc_4_yz = _x*s_5 - J_4_xy - _x_2*c_5_t
+        Jc_4_zz = J_4_xx + s_5*(J_5_xx*s_5 - J_5_t_2) - c_5_t*(J_5_t - J_5_yy*c_5_t)
+        Jc_4_t = Jc_4_xy*s_4
+        _x_4 = -Jc_4_t - Jc_4_xx*c_4_t
+        Jc_4_t_2 = Jc_4_xy*c_4_t
+        _x_5 = -Jc_4_t_2 - Jc_4_yy*s_4
+        _x_6 = -Jc_4_xz*c_4_t - Jc_4_yz*s_4
+        _y_2 = Jc_4_xz*s_4 - Jc_4_yz*c_4_t
+        # (rrrrrr-G9) first moment of link 4 about the origin of link 4
+        h_4_r1_x = h_4_y*s_4 - c_4_t*h_4_z
+        h_4_r1_y = c_4_t*h_4_y + h_4_z*s_4
+        # (rrrrrr-N44) inertia tensor of the links from 3 outwards about joint 3
+        Jc_3_t = h_4_r1_x*rrrrrr_joint4_offset_x
+        Jc_3_t_4 = h_4_r1_y*rrrrrr_joint4_offset_x
+        Jc_3_xx = J_3_xx + Jc_3_t_3 + Jc_4_zz - 2.0*Jc_3_t_2
+        Jc_3_xy = J_3_xy + _x_6 - Jc_3_t
+        Jc_3_xz = J_3_xz + _y_2 - Jc_3_t_4
+        Jc_3_yy = J_3_yy + Jc_3_t_3 - _x_4*c_4_t - _x_5*s_4
+        Jc_3_yz = J_3_yz + _x_4*s_4 - _x_5*c_4_t
+        Jc_3_zz = (
+        J_3_zz + Jc_3_t_3 + s_4*(Jc_4_xx*s_4 - Jc_4_t_2) - c_4_t*(Jc_4_t - Jc_4_yy*c_4_t)
+        )
+        # (rrrrrr-N43) first moment of the links from 3 outwards
+        hc_3_y = h_3_y + h_4_r1_x
+        hc_3_z = h_3_z + h_4_r1_y
+        # (rrrrrr-N44) inertia tensor of the links from 3 outwards about joint 3
+        Jc_3_t_5 = Jc_3_xy*s_3
+        _x_7 = Jc_3_xx*c_3 - Jc_3_t_5
+        Jc_3_t_6 = Jc_3_xy*c_3
+        _x_8 = Jc_3_t_6 - Jc_3_yy*s_3
+        _x_9 = Jc_3_xz*c_3 - Jc_3_yz*s_3
+        _y_3 = Jc_3_xz*s_3 + Jc_3_yz*c_3
+        # (rrrrrr-N43) first moment of the links from 3 outwards
+        hc_3_r0_x = c_3*hc_3_x - hc_3_y*s_3
+        hc_3_r0_y = c_3*hc_3_y + hc_3_x*s_3
+        # (rrrrrr-N53) inertia tensor of the links from 2 outwards about joint 2
+        Jc_2_t_2 = rrrrrr_joint3_offset_x*(Jc_2_t + hc_3_r0_x)
+        Jc_2_t_3 = 2.0*Jc_2_t_2
+        Jc_2_xy = J_2_xy + _x_7*s_3 + _x_8*c_3 - hc_3_r0_y*rrrrrr_joint3_offset_x
+        Jc_2_zz = J_2_zz + Jc_2_t_3 + Jc_3_zz
+        _y_4 = s_2*(J_2_xz + _x_9 - hc_3_z*rrrrrr_joint3_offset_x) - c_2_t*(J_2_yz + _y_3)
+        _y_5 = (
+        s_2*(s_2*(J_2_xx + Jc_2_t_3 + _x_7*c_3 - 2.0*Jc_2_t_2 - _x_8*s_3) - Jc_2_xy*c_2_t) -
+            c_2_t*(Jc_2_xy*s_2 - c_2_t*(J_2_yy + Jc_2_t_3 + c_3*(Jc_3_t_5 + Jc_3_yy*c_3) +
+            s_3*(Jc_3_t_6 + Jc_3_xx*s_3)))
+        )
+        # (rrrrrr-N59) inertia tensor of the links from 1 outwards about joint 1
+        Jc_1_zz = J_1_xx + _y_5
+        # (rrrrrr-N48) moment about joint 2 that accelerates joint 3, per unit
+        L_c3_2_z = Jc_3_zz + hc_3_r0_x*rrrrrr_joint3_offset_x
+        L_c3_2_r0_y = _x_9*s_2 - _y_3*c_2_t
+        # (rrrrrr-N37) moment about joint 3 that accelerates joint 4, per unit
+        L_c4_3_y = _x_6 - Jc_3_t
+        L_c4_3_z = _y_2 - Jc_3_t_4
+        # (rrrrrr-N39) moment about joint 2 that accelerates joint 4, per unit
+        L_c4_2_y = Jc_4_zz*s_3 + L_c4_3_y*c_3 - h_4_r1_x*rrrrrr_joint3_offset_x
+        L_c4_2_z = L_c4_3_z - c_3*h_4_r1_y*rrrrrr_joint3_offset_x
+        L_c4_2_r0_y = s_2*(Jc_4_zz*c_3 - L_c4_3_y*s_3) - L_c4_2_y*c_2_t
+        # (rrrrrr-N27) moment about joint 5 that accelerates joint 5, per unit
+        L_c5_r2_x = -J_5_zz*c_4_t - _x_3*s_4
+        L_c5_r2_y = J_5_zz*s_4 - _x_3*c_4_t
+        L_c5_r5_y = s_2*(_y*c_3 - L_c5_r2_x*s_3) - c_2_t*(L_c5_r2_x*c_3 + _y*s_3)
+        # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
+        end_p1_r0_x = (
+        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xy +
+            R_yx*rrrrrr_base_frame_yy + R_zx*rrrrrr_base_frame_zy) +
+            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xy +
+            R_yy*rrrrrr_base_frame_yy + R_zy*rrrrrr_base_frame_zy) +
+            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xy +
+            R_yz*rrrrrr_base_frame_yy + R_zz*rrrrrr_base_frame_zy)
+        )
+        end_p1_r0_y = (
+        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xz +
+            R_yx*rrrrrr_base_frame_yz + R_zx*rrrrrr_base_frame_zz) +
+            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xz +
+            R_yy*rrrrrr_base_frame_yz + R_zy*rrrrrr_base_frame_zz) +
+            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xz +
+            R_yz*rrrrrr_base_frame_yz + R_zz*rrrrrr_base_frame_zz)
+        )
+        end_p1_r0_z = (
+        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xx +
+            R_yx*rrrrrr_base_frame_yx + R_zx*rrrrrr_base_frame_zx) +
+            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xx +
+            R_yy*rrrrrr_base_frame_yx + R_zy*rrrrrr_base_frame_zx) +
+            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xx +
+            R_yz*rrrrrr_base_frame_yx + R_zz*rrrrrr_base_frame_zx)
+        )
+        end_p1_r1_x = end_p1_r0_y*s_1 - c_1_t*end_p1_r0_x
+        end_p1_r1_y = -c_1_t*end_p1_r0_y - end_p1_r0_x*s_1
+        end_p1_r3_x = end_p1_r0_z*s_2 - c_2_t*end_p1_r1_y
+        end_p1_r3_y = -c_2_t*end_p1_r0_z - end_p1_r1_y*s_2
+        end_p1_r4_x = c_3*end_p1_r3_x + end_p1_r3_y*s_3
+        end_p1_r4_y = c_3*end_p1_r3_y - end_p1_r3_x*s_3
+        end_p1_r6_x = end_p1_r1_x*s_4 - c_4_t*end_p1_r4_y
+        end_p1_r6_y = -c_4_t*end_p1_r1_x - end_p1_r4_y*s_4
+        end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
+        end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
+        # (rrrrrr-V13) force part of reciprocal wrench 1
+        w_1_t_4 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
+        w_1_t_5 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
+        w_1_t_6 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
+        w_1_t_7 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
+        w_1_t_8 = size*w_1_t_4
+        w_1_t_9 = size*w_1_t_6
+        w_1_t_10 = size*w_1_t_5
+        w_1_t_11 = size*w_1_t_7
+        w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
+        w_1_t_13 = c_5_t*end_p1_r6_x*size
+        w_1_t_14 = end_p1_r8_y*size
+        w_1_t_15 = sqrt(size_t + w_1_t_14*w_1_t_14)
+        inv_w_1_t_69 = 1.0/w_1_t_15
+        w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
+        w_1_t_17 = inv_w_1_t_69*w_1_t_14
+        w_1_t_18 = w_1_t_13*w_1_t_17
+        w_1_t_19 = w_1_t_16*w_1_t_18
+        w_1_t_20 = w_1_t_13 - w_1_t_17*w_1_t_18
+        w_1_t_21 = v_1_y*w_1_t_16 - w_1_t_17*w_1_t_9
+        w_1_t_22 = v_1_y - w_1_t_16*w_1_t_21
+        w_1_t_23 = w_1_t_9 + w_1_t_17*w_1_t_21
+        w_1_t_24 = w_1_t_11*w_1_t_17
+        w_1_t_25 = v_2_y*w_1_t_16 - w_1_t_24
+        w_1_t_26 = v_2_y - w_1_t_16*w_1_t_25
+        w_1_t_27 = w_1_t_11 + w_1_t_17*w_1_t_25
+        w_1_t_28 = w_1_t_24 - v_3_y*w_1_t_16
+        w_1_t_29 = v_3_y + w_1_t_16*w_1_t_28
+        w_1_t_30 = w_1_t_11 - w_1_t_17*w_1_t_28
+        w_1_t_31 = sqrt(v_4_z*v_4_z + w_1_t_12*w_1_t_12 + w_1_t_19*w_1_t_19 + w_1_t_20*w_1_t_20)
+        inv_w_1_t_101 = 1.0/w_1_t_31
+        w_1_t_32 = inv_w_1_t_101*w_1_t_19
+        w_1_t_33 = inv_w_1_t_101*v_4_z
+        w_1_t_34 = inv_w_1_t_101*w_1_t_12
+        w_1_t_35 = inv_w_1_t_101*w_1_t_20
+        w_1_t_36 = w_1_t_22*w_1_t_32 + w_1_t_23*w_1_t_35 + w_1_t_34*w_1_t_8 - v_1_z*w_1_t_33
+        w_1_t_37 = w_1_t_32*w_1_t_36 - w_1_t_22
+        w_1_t_38 = v_1_z + w_1_t_33*w_1_t_36
+        w_1_t_39 = w_1_t_34*w_1_t_36 - w_1_t_8
+        w_1_t_40 = w_1_t_35*w_1_t_36 - w_1_t_23
+        w_1_t_41 = w_1_t_10*w_1_t_34
+        w_1_t_42 = w_1_t_41 + w_1_t_26*w_1_t_32 + w_1_t_27*w_1_t_35 - v_2_z*w_1_t_33
+        w_1_t_43 = w_1_t_32*w_1_t_42 - w_1_t_26
+        w_1_t_44 = v_2_z + w_1_t_33*w_1_t_42
+        w_1_t_45 = w_1_t_34*w_1_t_42 - w_1_t_10
+        w_1_t_46 = w_1_t_35*w_1_t_42 - w_1_t_27
+        w_1_t_47 = w_1_t_41 + w_1_t_29*w_1_t_32 + w_1_t_30*w_1_t_35 - v_3_z*w_1_t_33
+        w_1_t_48 = w_1_t_32*w_1_t_47 - w_1_t_29
+        w_1_t_49 = v_3_z + w_1_t_33*w_1_t_47
+        w_1_t_50 = w_1_t_34*w_1_t_47 - w_1_t_10
+        w_1_t_51 = w_1_t_35*w_1_t_47 - w_1_t_30
+        w_1_t_52 = (
+        sqrt(v_1_x*v_1_x + w_1_t_37*w_1_t_37 + w_1_t_38*w_1_t_38 + w_1_t_39*w_1_t_39 +
+            w_1_t_40*w_1_t_40)
+        )
+        inv_w_1_t_150 = 1.0/w_1_t_52
+        w_1_t_53 = inv_w_1_t_150*v_1_x
+        w_1_t_54 = inv_w_1_t_150*w_1_t_37
+        w_1_t_55 = inv_w_1_t_150*w_1_t_38
+        w_1_t_56 = inv_w_1_t_150*w_1_t_39
+        w_1_t_57 = inv_w_1_t_150*w_1_t_40
+        w_1_t_58 = (
+        v_2_x*w_1_t_53 + w_1_t_43*w_1_t_54 + w_1_t_44*w_1_t_55 + w_1_t_45*w_1_t_56 +
+            w_1_t_46*w_1_t_57
+        )
+        w_1_t_59 = v_2_x - w_1_t_53*w_1_t_58
+        w_1_t_60 = w_1_t_43 - w_1_t_54*w_1_t_58
+        w_1_t_61 = w_1_t_44 - w_1_t_55*w_1_t_58
+        w_1_t_62 = w_1_t_45 - w_1_t_56*w_1_t_58
+        w_1_t_63 = w_1_t_46 - w_1_t_57*w_1_t_58
+        w_1_t_64 = (
+        v_3_x*w_1_t_53 + w_1_t_48*w_1_t_54 + w_1_t_49*w_1_t_55 + w_1_t_50*w_1_t_56 +
+            w_1_t_51*w_1_t_57
+        )
+        w_1_t_65 = v_3_x - w_1_t_53*w_1_t_64
+        w_1_t_66 = w_1_t_48 - w_1_t_54*w_1_t_64
+        w_1_t_67 = w_1_t_49 - w_1_t_55*w_1_t_64
+        w_1_t_68 = w_1_t_50 - w_1_t_56*w_1_t_64
+        w_1_t_69 = w_1_t_51 - w_1_t_57*w_1_t_64
+        w_1_t_70 = (
+        sqrt(w_1_t_59*w_1_t_59 + w_1_t_60*w_1_t_60 + w_1_t_61*w_1_t_61 + w_1_t_62*w_1_t_62 +
+            w_1_t_63*w_1_t_63)
+        )
+        inv_w_1_t_194 = 1.0/w_1_t_70
+        w_1_t_71 = inv_w_1_t_194*w_1_t_59
+        w_1_t_72 = inv_w_1_t_194*w_1_t_60
+        w_1_t_73 = inv_w_1_t_194*w_1_t_61
+        w_1_t_74 = inv_w_1_t_194*w_1_t_62
+        w_1_t_75 = inv_w_1_t_194*w_1_t_63
+        w_1_t_76 = (
+        w_1_t_65*w_1_t_71 + w_1_t_66*w_1_t_72 + w_1_t_67*w_1_t_73 + w_1_t_68*w_1_t_74 +
+            w_1_t_69*w_1_t_75
+        )
+        w_1_t_77 = w_1_t_65 - w_1_t_71*w_1_t_76
+        w_1_t_78 = w_1_t_66 - w_1_t_72*w_1_t_76
+        w_1_t_79 = w_1_t_67 - w_1_t_73*w_1_t_76
+        w_1_t_80 = w_1_t_68 - w_1_t_74*w_1_t_76
+        w_1_t_81 = w_1_t_69 - w_1_t_75*w_1_t_76
+        w_1_t_82 = (
+        sqrt(w_1_t_77*w_1_t_77 + w_1_t_78*w_1_t_78 + w_1_t_79*w_1_t_79 + w_1_t_80*w_1_t_80 +
+            w_1_t_81*w_1_t_81)
+        )
+        inv_w_1_t_222 = 1.0/w_1_t_82
+        w_1_t_83 = inv_w_1_t_222*w_1_t_77
+        w_1_t_84 = inv_w_1_t_222*w_1_t_78
+        w_1_t_85 = inv_w_1_t_222*w_1_t_79
+        w_1_t_86 = inv_w_1_t_222*w_1_t_80
+        w_1_t_87 = inv_w_1_t_222*w_1_t_81
+        w_1_t_88 = inv_w_1_t_150*inv_w_1_t_194*w_1_t_58
+        w_1_t_89 = inv_w_1_t_222*(inv_w_1_t_150*w_1_t_64 - w_1_t_76*w_1_t_88)
+        w_1_t_90 = w_1_t_71*w_1_t_88 + w_1_t_83*w_1_t_89 - inv_w_1_t_150*w_1_t_53
+        w_1_t_91 = w_1_t_72*w_1_t_88 + w_1_t_84*w_1_t_89 - inv_w_1_t_150*w_1_t_54
+        w_1_t_92 = w_1_t_73*w_1_t_88 + w_1_t_85*w_1_t_89 - inv_w_1_t_150*w_1_t_55
+        w_1_t_93 = size*(w_1_t_74*w_1_t_88 + w_1_t_86*w_1_t_89 - inv_w_1_t_150*w_1_t_56)
+        w_1_t_94 = size*(w_1_t_75*w_1_t_88 + w_1_t_87*w_1_t_89 - inv_w_1_t_150*w_1_t_57)
+        # (rrrrrr-V16) force part of reciprocal wrench 2
+        w_2_t = inv_w_1_t_194*inv_w_1_t_222*w_1_t_76
+        w_2_t_2 = inv_w_1_t_194*w_1_t_71 - w_1_t_83*w_2_t
+        w_2_t_3 = inv_w_1_t_194*w_1_t_72 - w_1_t_84*w_2_t
+        w_2_t_4 = w_1_t_85*w_2_t - inv_w_1_t_194*w_1_t_73
+        w_2_t_5 = size*(inv_w_1_t_194*w_1_t_74 - w_1_t_86*w_2_t)
+        w_2_t_6 = size*(inv_w_1_t_194*w_1_t_75 - w_1_t_87*w_2_t)
+        # (rrrrrr-V19) force part of reciprocal wrench 3
+        w_3_t = inv_w_1_t_222*w_1_t_83
+        w_3_t_2 = inv_w_1_t_222*w_1_t_84
+        w_3_t_3 = inv_w_1_t_222*w_1_t_85
+        w_3_t_4 = inv_w_1_t_222*size*w_1_t_86
+        w_3_t_5 = inv_w_1_t_222*size*w_1_t_87
+        # (rrrrrr-V22) force part of reciprocal wrench 4
+        w_4_t = inv_w_1_t_101*inv_w_1_t_150*w_1_t_36
+        w_4_t_2 = inv_w_1_t_194*(inv_w_1_t_101*w_1_t_42 - w_1_t_58*w_4_t)
+        w_4_t_3 = inv_w_1_t_222*(w_1_t_64*w_4_t + w_1_t_76*w_4_t_2 - inv_w_1_t_101*w_1_t_47)
+        w_4_t_4 = w_1_t_53*w_4_t + w_1_t_71*w_4_t_2 - w_1_t_83*w_4_t_3
+        w_4_t_5 = inv_w_1_t_101*w_1_t_32 + w_1_t_54*w_4_t + w_1_t_72*w_4_t_2 - w_1_t_84*w_4_t_3
+        w_4_t_6 = inv_w_1_t_101*w_1_t_33 + w_1_t_55*w_4_t + w_1_t_73*w_4_t_2 - w_1_t_85*w_4_t_3
+        w_4_t_7 = (
+        size*(inv_w_1_t_101*w_1_t_34 + w_1_t_56*w_4_t + w_1_t_74*w_4_t_2 - w_1_t_86*w_4_t_3)
+        )
+        w_4_t_8 = (
+        size*(inv_w_1_t_101*w_1_t_35 + w_1_t_57*w_4_t + w_1_t_75*w_4_t_2 - w_1_t_87*w_4_t_3)
+        )
+        # (rrrrrr-V25) force part of reciprocal wrench 5
+        w_5_t = inv_w_1_t_101*inv_w_1_t_69*w_1_t_18
+        w_5_t_2 = inv_w_1_t_150*(inv_w_1_t_69*w_1_t_21 + w_1_t_36*w_5_t)
+        w_5_t_3 = inv_w_1_t_194*(inv_w_1_t_69*w_1_t_25 + w_1_t_42*w_5_t - w_1_t_58*w_5_t_2)
+        w_5_t_4 = (
+        inv_w_1_t_222*(inv_w_1_t_69*w_1_t_28 + w_1_t_64*w_5_t_2 + w_1_t_76*w_5_t_3 -
+            w_1_t_47*w_5_t)
+        )
+        w_5_t_5 = w_1_t_53*w_5_t_2 + w_1_t_71*w_5_t_3 - w_1_t_83*w_5_t_4
+        w_5_t_6 = (
+        inv_w_1_t_69*w_1_t_16 + w_1_t_32*w_5_t + w_1_t_54*w_5_t_2 + w_1_t_72*w_5_t_3 -
+            w_1_t_84*w_5_t_4
+        )
+        w_5_t_7 = w_1_t_33*w_5_t + w_1_t_55*w_5_t_2 + w_1_t_73*w_5_t_3 - w_1_t_85*w_5_t_4
+        w_5_t_8 = size*(w_1_t_34*w_5_t + w_1_t_56*w_5_t_2 + w_1_t_74*w_5_t_3 - w_1_t_86*w_5_t_4)
+        w_5_t_9 = (
+        size*(w_1_t_35*w_5_t + w_1_t_57*w_5_t_2 + w_1_t_75*w_5_t_3 - inv_w_1_t_69*w_1_t_17 -
+            w_1_t_87*w_5_t_4)
+        )
+        # (rrrrrr-N112) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        d_Gamma_1_t = L_c5_r5_y*inv_w_1_t_69
+        d_Gamma_1_t_2 = inv_w_1_t_101*(L_c4_2_r0_y - d_Gamma_1_t*w_1_t_18)
+        d_Gamma_1_t_3 = inv_w_1_t_150*(Jc_1_zz + d_Gamma_1_t_2*w_1_t_36 - d_Gamma_1_t*w_1_t_21)
+        d_Gamma_1_t_4 = (
+        inv_w_1_t_194*(_y_4 + d_Gamma_1_t_2*w_1_t_42 - d_Gamma_1_t*w_1_t_25 -
+            d_Gamma_1_t_3*w_1_t_58)
+        )
+        d_Gamma_1_t_5 = (
+        inv_w_1_t_222*(L_c3_2_r0_y + d_Gamma_1_t*w_1_t_28 + d_Gamma_1_t_2*w_1_t_47 -
+            d_Gamma_1_t_3*w_1_t_64 - d_Gamma_1_t_4*w_1_t_76)
+        )
+        d_Gamma_1_x = (
+        d_Gamma_1_t_3*w_1_t_53 + d_Gamma_1_t_4*w_1_t_71 + d_Gamma_1_t_5*w_1_t_83 + e_1_r6_y*h_5_z
+            + h_5_y*v_1_t
+        )
+        d_Gamma_1_y = (
+        d_Gamma_1_t*w_1_t_16 - d_Gamma_1_t_2*w_1_t_32 - d_Gamma_1_t_3*w_1_t_54 -
+            d_Gamma_1_t_4*w_1_t_72 - d_Gamma_1_t_5*w_1_t_84 - e_1_r6_x*h_5_z - h_5_x*v_1_t
+        )
+        d_Gamma_1_z = (
+        d_Gamma_1_t_2*w_1_t_33 + d_Gamma_1_t_3*w_1_t_55 + d_Gamma_1_t_4*w_1_t_73 +
+            d_Gamma_1_t_5*w_1_t_85 + e_1_r6_x*h_5_y - e_1_r6_y*h_5_x
+        )
+        # (rrrrrr-N102) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        d_Gamma_2_t = h_5_z*v_2_t_2 - h_5_y*s_4
+        d_Gamma_2_t_2 = h_5_z*v_2_t - h_5_x*s_4
+        d_Gamma_2_t_3 = h_5_y*v_2_t - h_5_x*v_2_t_2
+        d_Gamma_2_t_4 = L_c5_r2_y*inv_w_1_t_69
+        d_Gamma_2_t_5 = d_Gamma_2_t_4*w_1_t_18
+        d_Gamma_2_t_6 = inv_w_1_t_101*(L_c4_2_z - d_Gamma_2_t_5)
+        d_Gamma_2_t_7 = d_Gamma_2_t_4*w_1_t_21
+        d_Gamma_2_t_8 = inv_w_1_t_150*(_y_4 + d_Gamma_2_t_6*w_1_t_36 - d_Gamma_2_t_7)
+        d_Gamma_2_t_9 = d_Gamma_2_t_4*w_1_t_25
+        d_Gamma_2_t_10 = (
+        inv_w_1_t_194*(Jc_2_zz + d_Gamma_2_t_6*w_1_t_42 - d_Gamma_2_t_9 - d_Gamma_2_t_8*w_1_t_58)
+        )
+        d_Gamma_2_t_11 = d_Gamma_2_t_4*w_1_t_28
+        d_Gamma_2_t_12 = (
+        inv_w_1_t_222*(L_c3_2_z + d_Gamma_2_t_11 + d_Gamma_2_t_6*w_1_t_47 -
+            d_Gamma_2_t_10*w_1_t_76 - d_Gamma_2_t_8*w_1_t_64)
+        )
+        d_Gamma_2_t_13 = d_Gamma_2_t_4*w_1_t_16
+        d_Gamma_2_x = (
+        d_Gamma_2_t + d_Gamma_2_t_10*w_1_t_71 + d_Gamma_2_t_12*w_1_t_83 + d_Gamma_2_t_8*w_1_t_53
+        )
+        d_Gamma_2_y = (
+        d_Gamma_2_t_13 - d_Gamma_2_t_2 - d_Gamma_2_t_10*w_1_t_72 - d_Gamma_2_t_12*w_1_t_84 -
+            d_Gamma_2_t_6*w_1_t_32 - d_Gamma_2_t_8*w_1_t_54
+        )
+        d_Gamma_2_z = (
+        d_Gamma_2_t_3 + d_Gamma_2_t_10*w_1_t_73 + d_Gamma_2_t_12*w_1_t_85 + d_Gamma_2_t_6*w_1_t_33
+            + d_Gamma_2_t_8*w_1_t_55
+        )
+        # (rrrrrr-N90) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        d_Gamma_3_t = inv_w_1_t_101*(L_c4_3_z - d_Gamma_2_t_5)
+        d_Gamma_3_t_2 = inv_w_1_t_150*(L_c3_2_r0_y + d_Gamma_3_t*w_1_t_36 - d_Gamma_2_t_7)
+        d_Gamma_3_t_3 = (
+        inv_w_1_t_194*(L_c3_2_z + d_Gamma_3_t*w_1_t_42 - d_Gamma_2_t_9 - d_Gamma_3_t_2*w_1_t_58)
+        )
+        d_Gamma_3_t_4 = (
+        inv_w_1_t_222*(Jc_3_zz + d_Gamma_2_t_11 + d_Gamma_3_t*w_1_t_47 - d_Gamma_3_t_2*w_1_t_64 -
+            d_Gamma_3_t_3*w_1_t_76)
+        )
+        d_Gamma_3_x = (
+        d_Gamma_2_t + d_Gamma_3_t_2*w_1_t_53 + d_Gamma_3_t_3*w_1_t_71 + d_Gamma_3_t_4*w_1_t_83
+        )
+        d_Gamma_3_y = (
+        d_Gamma_2_t_13 - d_Gamma_2_t_2 - d_Gamma_3_t*w_1_t_32 - d_Gamma_3_t_2*w_1_t_54 -
+            d_Gamma_3_t_3*w_1_t_72 - d_Gamma_3_t_4*w_1_t_84
+        )
+        d_Gamma_3_z = (
+        d_Gamma_2_t_3 + d_Gamma_3_t*w_1_t_33 + d_Gamma_3_t_2*w_1_t_55 + d_Gamma_3_t_3*w_1_t_73 +
+            d_Gamma_3_t_4*w_1_t_85
+        )
+        # (rrrrrr-N78) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
+        d_Gamma_4_t = _y*inv_w_1_t_69
+        d_Gamma_4_t_2 = inv_w_1_t_101*(Jc_4_zz - d_Gamma_4_t*w_1_t_18)
+        d_Gamma_4_t_3 = (
+        inv_w_1_t_150*(L_c4_2_r0_y + d_Gamma_4_t_2*w_1_t_36 - d_Gamma_4_t*w_1_t_21)
+        )
+        d_Gamma_4_t_4 = (
+        inv_w_1_t_194*(L_c4_2_z + d_Gamma_4_t_2*w_1_t_42 - d_Gamma_4_t*w_1_t_25 -
+            d_Gamma_4_t_3*w_1_t_58)
+        )
+        d_Gamma_4_t_5 = (
+        inv_w_1_t_222*(L_c4_3_z + d_Gamma_4_t*w_1_t_28 + d_Gamma_4_t_2*w_1_t_47 -
+            d_Gamma_4_t_3*w_1_t_64 - d_Gamma_4_t_4*w_1_t_76)
+        )
+        d_Gamma_4_x = (
+        d_Gamma_4_t_3*w_1_t_53 + d_Gamma_4_t_4*w_1_t_71 + d_Gamma_4_t_5*w_1_t_83 - c_5_t*h_5_z
+        )
+        d_Gamma_4_y = (
+        d_Gamma_4_t*w_1_t_16 - d_Gamma_4_t_2*w_1_t_32 - d_Gamma_4_t_3*w_1_t_54 -
+            d_Gamma_4_t_4*w_1_t_72 - d_Gamma_4_t_5*w_1_t_84 - h_5_z*s_5
+        )
+        d_Gamma_4_z = (
+        c_5_t*h_5_x + d_Gamma_4_t_2*w_1_t_33 + d_Gamma_4_t_3*w_1_t_55 + d_Gamma_4_t_4*w_1_t_73 +
+            d_Gamma_4_t_5*w_1_t_85 + h_5_y*s_5
+        )
+        # (rrrrrr-N68) coefficient of the acceleration in: moment about axis 5 of the distal links' inertia and weight
+        d_Gamma_5_t = J_5_zz*inv_w_1_t_69
+        d_Gamma_5_t_2 = inv_w_1_t_101*(_y - d_Gamma_5_t*w_1_t_18)
+        d_Gamma_5_t_3 = inv_w_1_t_150*(L_c5_r5_y + d_Gamma_5_t_2*w_1_t_36 - d_Gamma_5_t*w_1_t_21)
+        d_Gamma_5_t_4 = (
+        inv_w_1_t_194*(L_c5_r2_y + d_Gamma_5_t_2*w_1_t_42 - d_Gamma_5_t*w_1_t_25 -
+            d_Gamma_5_t_3*w_1_t_58)
+        )
+        d_Gamma_5_t_5 = (
+        inv_w_1_t_222*(L_c5_r2_y + d_Gamma_5_t*w_1_t_28 + d_Gamma_5_t_2*w_1_t_47 -
+            d_Gamma_5_t_3*w_1_t_64 - d_Gamma_5_t_4*w_1_t_76)
+        )
+        d_Gamma_5_t_6 = (
+        d_Gamma_5_t_2*w_1_t_33 + d_Gamma_5_t_3*w_1_t_55 + d_Gamma_5_t_4*w_1_t_73 +
+            d_Gamma_5_t_5*w_1_t_85
+        )
+        d_Gamma_5_x = (
+        d_Gamma_5_t_3*w_1_t_53 + d_Gamma_5_t_4*w_1_t_71 + d_Gamma_5_t_5*w_1_t_83 - h_5_y
+        )
+        d_Gamma_5_y = (
+        h_5_x + d_Gamma_5_t*w_1_t_16 - d_Gamma_5_t_2*w_1_t_32 - d_Gamma_5_t_3*w_1_t_54 -
+            d_Gamma_5_t_4*w_1_t_72 - d_Gamma_5_t_5*w_1_t_84
+        )
+        # (rrrrrr-A48) coefficient of the acceleration in: angular acceleration of link 5
+        d_alpha_5_xz = s_5*w_4_t_6 + v_2_t*w_3_t_3 - e_1_r6_x*w_1_t_92 - v_2_t*w_2_t_4
+        d_alpha_5_yz = v_2_t_2*w_3_t_3 - c_5_t*w_4_t_6 - e_1_r6_y*w_1_t_92 - v_2_t_2*w_2_t_4
+        d_alpha_5_zy = w_5_t_6 - s_4*w_2_t_3 - s_4*w_3_t_2 - v_1_t*w_1_t_91
+        d_alpha_5_zz = s_4*w_3_t_3 + v_1_t*w_1_t_92 - w_5_t_7 - s_4*w_2_t_4
+        # (rrrrrr-N25) coefficient of the acceleration in: inertia force of link 5 from its turning about its reference point
+        d_phi_5_t = (
+        h_5_z*(v_2_t_2*w_2_t_2 + v_2_t_2*w_3_t - c_5_t*w_4_t_4 - e_1_r6_y*w_1_t_90) -
+            h_5_y*(s_4*w_2_t_2 + s_4*w_3_t + v_1_t*w_1_t_90 - w_5_t_5)
+        )
+        # (rrrrrr-N132) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        d_c_xx = (
+        d_Gamma_1_x*w_1_t_90 + d_Gamma_5_x*w_5_t_5 - d_phi_5_t - d_Gamma_2_x*w_2_t_2 -
+            d_Gamma_3_x*w_3_t - d_Gamma_4_x*w_4_t_4
+        )
+        d_c_xy = (
+        d_Gamma_1_y*w_1_t_90 + d_Gamma_5_y*w_5_t_5 + d_alpha_5_zy*h_5_y - d_Gamma_2_y*w_2_t_2 -
+            d_Gamma_3_y*w_3_t - d_Gamma_4_y*w_4_t_4 - h_5_z*(c_5_t*w_4_t_5 + e_1_r6_y*w_1_t_91 -
+            v_2_t_2*w_2_t_3 - v_2_t_2*w_3_t_2)
+        )
+        d_c_xz = (
+        d_Gamma_1_z*w_1_t_90 + d_Gamma_5_t_6*w_5_t_5 + d_alpha_5_zz*h_5_y - d_Gamma_2_z*w_2_t_2 -
+            d_Gamma_3_z*w_3_t - d_Gamma_4_z*w_4_t_4 - d_alpha_5_yz*h_5_z
+        )
+        d_c_yy = (
+        d_Gamma_2_y*w_2_t_3 + d_Gamma_3_y*w_3_t_2 + d_Gamma_4_y*w_4_t_5 + h_5_z*(e_1_r6_x*w_1_t_91
+            - s_5*w_4_t_5 - v_2_t*w_2_t_3 - v_2_t*w_3_t_2) - d_Gamma_1_y*w_1_t_91 -
+            d_Gamma_5_y*w_5_t_6 - d_alpha_5_zy*h_5_x
+        )
+        d_c_yz = (
+        d_Gamma_2_z*w_2_t_3 + d_Gamma_3_z*w_3_t_2 + d_Gamma_4_z*w_4_t_5 + d_alpha_5_xz*h_5_z -
+            d_Gamma_1_z*w_1_t_91 - d_Gamma_5_t_6*w_5_t_6 - d_alpha_5_zz*h_5_x
+        )
+        # (rrrrrr-N134) inertia of the leg at the connection point, without the mass gathered there
+        Q_t = d_c_xx - d_c_yy
+        Q_t_2 = 0.5*Q_t
+        Q_t_3 = (
+        d_c_xx + d_Gamma_3_z*w_3_t_3 + d_Gamma_4_z*w_4_t_6 + d_alpha_5_xz*h_5_y -
+            d_Gamma_1_z*w_1_t_92 - d_Gamma_2_z*w_2_t_4 - d_Gamma_5_t_6*w_5_t_7 -
+            d_alpha_5_yz*h_5_x
+        )
+        Q_t_4 = 0.5*Q_t_3
+        Q_t_5 = (
+        axis_x_rrrrrr_axes5_x*d_c_xy + axis_z_rrrrrr_axes5_in_base_x*d_c_yz -
+            Q_t_2*axis_y_rrrrrr_axes5_in_base_x
+        )
+        Q_t_6 = (
+        axis_x_rrrrrr_axes5_y*d_c_xy + axis_z_rrrrrr_axes5_in_base_y*d_c_yz -
+            Q_t_2*axis_y_rrrrrr_axes5_in_base_y
+        )
+        Q_t_7 = (
+        axis_x_rrrrrr_axes5_z*d_c_xy + axis_z_rrrrrr_axes5_in_base_z*d_c_yz -
+            Q_t_2*axis_y_rrrrrr_axes5_in_base_z
+        )
+        Q_t_8 = Q_t_4*axis_z_rrrrrr_axes5_in_base_x - axis_x_rrrrrr_axes5_x*d_c_xz
+        Q_t_9 = Q_t_4*axis_z_rrrrrr_axes5_in_base_y - axis_x_rrrrrr_axes5_y*d_c_xz
+        Q_t_10 = Q_t_4*axis_z_rrrrrr_axes5_in_base_z - axis_x_rrrrrr_axes5_z*d_c_xz
+        Q_t_11 = Q_t_5*axis_y_rrrrrr_axes5_in_base_x - Q_t_8*axis_z_rrrrrr_axes5_in_base_x
+        Q_t_12 = 2.0*Q_t_11 + d_c_xx
+        Q_t_13 = (
+        Q_t_5*axis_y_rrrrrr_axes5_in_base_y + Q_t_6*axis_y_rrrrrr_axes5_in_base_x -
+            Q_t_8*axis_z_rrrrrr_axes5_in_base_y - Q_t_9*axis_z_rrrrrr_axes5_in_base_x
+        )
+        Q_t_14 = (
+        Q_t_5*axis_y_rrrrrr_axes5_in_base_z + Q_t_7*axis_y_rrrrrr_axes5_in_base_x -
+            Q_t_10*axis_z_rrrrrr_axes5_in_base_x - Q_t_8*axis_z_rrrrrr_axes5_in_base_z
+        )
+        Q_t_15 = Q_t_6*axis_y_rrrrrr_axes5_in_base_y - Q_t_9*axis_z_rrrrrr_axes5_in_base_y
+        Q_t_16 = 2.0*Q_t_15 + d_c_xx
+        Q_t_17 = (
+        Q_t_6*axis_y_rrrrrr_axes5_in_base_z + Q_t_7*axis_y_rrrrrr_axes5_in_base_y -
+            Q_t_10*axis_z_rrrrrr_axes5_in_base_y - Q_t_9*axis_z_rrrrrr_axes5_in_base_z
+        )
+        Q_t_18 = Q_t_7*axis_y_rrrrrr_axes5_in_base_z - Q_t_10*axis_z_rrrrrr_axes5_in_base_z
+        Q_t_19 = 2.0*Q_t_18 + d_c_xx
+        # (rrrrrr-V28) moment part of reciprocal wrench 1
+        o_1_t = end_p1_r8_y*w_1_t_93
+        o_1_t_2 = end_p1_r8_y*w_1_t_94
+        o_1_y = end_p1_r6_x*w_1_t_94 - end_p1_r8_x*w_1_t_93
+        # (rrrrrr-V29) moment part of reciprocal wrench 2
+        o_2_t = end_p1_r8_y*w_2_t_5
+        o_2_t_2 = end_p1_r8_y*w_2_t_6
+        o_2_y = end_p1_r8_x*w_2_t_5 - end_p1_r6_x*w_2_t_6
+        # (rrrrrr-V30) moment part of reciprocal wrench 3
+        o_3_t = end_p1_r8_y*w_3_t_4
+        o_3_t_2 = end_p1_r8_y*w_3_t_5
+        o_3_y = end_p1_r8_x*w_3_t_4 - end_p1_r6_x*w_3_t_5
+        # (rrrrrr-V31) moment part of reciprocal wrench 4
+        o_4_t = end_p1_r8_y*w_4_t_7
+        o_4_t_2 = end_p1_r8_y*w_4_t_8
+        o_4_y = end_p1_r8_x*w_4_t_7 - end_p1_r6_x*w_4_t_8
+        # (rrrrrr-V32) moment part of reciprocal wrench 5
+        o_5_t = end_p1_r8_y*w_5_t_8
+        o_5_t_2 = end_p1_r8_y*w_5_t_9
+        o_5_y = end_p1_r6_x*w_5_t_9 - end_p1_r8_x*w_5_t_8
+        # (rrrrrr-N111) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        d0_Gamma_1_x = (
+        Jc_1_zz*o_1_t + L_c5_r5_y*o_5_t - L_c3_2_r0_y*o_3_t - L_c4_2_r0_y*o_4_t - _y_4*o_2_t
+        )
+        d0_Gamma_1_y = (
+        Jc_1_zz*o_1_y + L_c3_2_r0_y*o_3_y + L_c4_2_r0_y*o_4_y + L_c5_r5_y*o_5_y + _y_4*o_2_y
+        )
+        d0_Gamma_1_z = (
+        L_c3_2_r0_y*o_3_t_2 + L_c4_2_r0_y*o_4_t_2 + _y_4*o_2_t_2 - Jc_1_zz*o_1_t_2 -
+            L_c5_r5_y*o_5_t_2
+        )
+        # (rrrrrr-N101) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        d0_Gamma_2_t = L_c5_r2_y*o_5_t
+        d0_Gamma_2_t_2 = L_c5_r2_y*o_5_y
+        d0_Gamma_2_t_3 = L_c5_r2_y*o_5_t_2
+        d0_Gamma_2_x = d0_Gamma_2_t + _y_4*o_1_t - Jc_2_zz*o_2_t - L_c3_2_z*o_3_t - L_c4_2_z*o_4_t
+        d0_Gamma_2_y = (
+        d0_Gamma_2_t_2 + Jc_2_zz*o_2_y + L_c3_2_z*o_3_y + L_c4_2_z*o_4_y + _y_4*o_1_y
+        )
+        d0_Gamma_2_z = (
+        Jc_2_zz*o_2_t_2 + L_c3_2_z*o_3_t_2 + L_c4_2_z*o_4_t_2 - d0_Gamma_2_t_3 - _y_4*o_1_t_2
+        )
+        # (rrrrrr-N89) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        d0_Gamma_3_x = (
+        d0_Gamma_2_t + L_c3_2_r0_y*o_1_t - Jc_3_zz*o_3_t - L_c3_2_z*o_2_t - L_c4_3_z*o_4_t
+        )
+        d0_Gamma_3_y = (
+        d0_Gamma_2_t_2 + Jc_3_zz*o_3_y + L_c3_2_r0_y*o_1_y + L_c3_2_z*o_2_y + L_c4_3_z*o_4_y
+        )
+        d0_Gamma_3_z = (
+        Jc_3_zz*o_3_t_2 + L_c3_2_z*o_2_t_2 + L_c4_3_z*o_4_t_2 - d0_Gamma_2_t_3 -
+            L_c3_2_r0_y*o_1_t_2
+        )
+        # (rrrrrr-N77) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
+        d0_Gamma_4_x = (
+        L_c4_2_r0_y*o_1_t + _y*o_5_t - Jc_4_zz*o_4_t - L_c4_2_z*o_2_t - L_c4_3_z*o_3_t
+        )
+        d0_Gamma_4_y = (
+        Jc_4_zz*o_4_y + L_c4_2_r0_y*o_1_y + L_c4_2_z*o_2_y + L_c4_3_z*o_3_y + _y*o_5_y
+        )
+        d0_Gamma_4_z = (
+        Jc_4_zz*o_4_t_2 + L_c4_2_z*o_2_t_2 + L_c4_3_z*o_3_t_2 - L_c4_2_r0_y*o_1_t_2 - _y*o_5_t_2
+        )
+        # (rrrrrr-N67) coefficient of the acceleration in: moment about axis 5 of the distal links' inertia and weight
+        d0_Gamma_5_x = (
+        J_5_zz*o_5_t + L_c5_r5_y*o_1_t - L_c5_r2_y*o_2_t - L_c5_r2_y*o_3_t - _y*o_4_t
+        )
+        d0_Gamma_5_y = (
+        J_5_zz*o_5_y + L_c5_r2_y*o_2_y + L_c5_r2_y*o_3_y + L_c5_r5_y*o_1_y + _y*o_4_y
+        )
+        d0_Gamma_5_z = (
+        L_c5_r2_y*o_2_t_2 + L_c5_r2_y*o_3_t_2 + _y*o_4_t_2 - J_5_zz*o_5_t_2 - L_c5_r5_y*o_1_t_2
+        )
+        # (rrrrrr-A47) coefficient of the acceleration in: angular acceleration of link 5
+        d0_alpha_5_xx = e_1_r6_x*o_1_t - o_2_t*v_2_t - o_3_t*v_2_t - o_4_t*s_5
+        d0_alpha_5_xy = e_1_r6_x*o_1_y + o_2_y*v_2_t + o_3_y*v_2_t + o_4_y*s_5
+        d0_alpha_5_xz = o_2_t_2*v_2_t + o_3_t_2*v_2_t + o_4_t_2*s_5 - e_1_r6_x*o_1_t_2
+        d0_alpha_5_yx = c_5_t*o_4_t + e_1_r6_y*o_1_t - o_2_t*v_2_t_2 - o_3_t*v_2_t_2
+        d0_alpha_5_yy = e_1_r6_y*o_1_y + o_2_y*v_2_t_2 + o_3_y*v_2_t_2 - c_5_t*o_4_y
+        d0_alpha_5_yz = o_2_t_2*v_2_t_2 + o_3_t_2*v_2_t_2 - c_5_t*o_4_t_2 - e_1_r6_y*o_1_t_2
+        d0_alpha_5_zx = o_5_t - o_1_t*v_1_t - o_2_t*s_4 - o_3_t*s_4
+        d0_alpha_5_zy = o_5_y + o_2_y*s_4 + o_3_y*s_4 - o_1_y*v_1_t
+        d0_alpha_5_zz = o_1_t_2*v_1_t + o_2_t_2*s_4 + o_3_t_2*s_4 - o_5_t_2
+        # (rrrrrr-N131) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        d0_c_xx = (
+        d0_Gamma_1_x*w_1_t_90 + d0_Gamma_5_x*w_5_t_5 + d0_alpha_5_zx*h_5_y - d0_Gamma_2_x*w_2_t_2
+            - d0_Gamma_3_x*w_3_t - d0_Gamma_4_x*w_4_t_4 - d0_alpha_5_yx*h_5_z
+        )
+        d0_c_xy = (
+        d0_Gamma_1_y*w_1_t_90 + d0_Gamma_5_y*w_5_t_5 + d0_alpha_5_zy*h_5_y - d0_Gamma_2_y*w_2_t_2
+            - d0_Gamma_3_y*w_3_t - d0_Gamma_4_y*w_4_t_4 - d0_alpha_5_yy*h_5_z
+        )
+        d0_c_xz = (
+        d0_Gamma_1_z*w_1_t_90 + d0_Gamma_5_z*w_5_t_5 + d0_alpha_5_zz*h_5_y - d0_Gamma_2_z*w_2_t_2
+            - d0_Gamma_3_z*w_3_t - d0_Gamma_4_z*w_4_t_4 - d0_alpha_5_yz*h_5_z
+        )
+        d0_c_yx = (
+        d0_Gamma_2_x*w_2_t_3 + d0_Gamma_3_x*w_3_t_2 + d0_Gamma_4_x*w_4_t_5 + d0_alpha_5_xx*h_5_z -
+            d0_Gamma_1_x*w_1_t_91 - d0_Gamma_5_x*w_5_t_6 - d0_alpha_5_zx*h_5_x
+        )
+        d0_c_yy = (
+        d0_Gamma_2_y*w_2_t_3 + d0_Gamma_3_y*w_3_t_2 + d0_Gamma_4_y*w_4_t_5 + d0_alpha_5_xy*h_5_z -
+            d0_Gamma_1_y*w_1_t_91 - d0_Gamma_5_y*w_5_t_6 - d0_alpha_5_zy*h_5_x
+        )
+        d0_c_yz = (
+        d0_Gamma_2_z*w_2_t_3 + d0_Gamma_3_z*w_3_t_2 + d0_Gamma_4_z*w_4_t_5 + d0_alpha_5_xz*h_5_z -
+            d0_Gamma_1_z*w_1_t_91 - d0_Gamma_5_z*w_5_t_6 - d0_alpha_5_zz*h_5_x
+        )
+        d0_c_zx = (
+        d0_Gamma_1_x*w_1_t_92 + d0_Gamma_2_x*w_2_t_4 + d0_Gamma_5_x*w_5_t_7 + d0_alpha_5_yx*h_5_x
+            - d0_Gamma_3_x*w_3_t_3 - d0_Gamma_4_x*w_4_t_6 - d0_alpha_5_xx*h_5_y
+        )
+        d0_c_zy = (
+        d0_Gamma_1_y*w_1_t_92 + d0_Gamma_2_y*w_2_t_4 + d0_Gamma_5_y*w_5_t_7 + d0_alpha_5_yy*h_5_x
+            - d0_Gamma_3_y*w_3_t_3 - d0_Gamma_4_y*w_4_t_6 - d0_alpha_5_xy*h_5_y
+        )
+        d0_c_zz = (
+        d0_Gamma_1_z*w_1_t_92 + d0_Gamma_2_z*w_2_t_4 + d0_Gamma_5_z*w_5_t_7 + d0_alpha_5_yz*h_5_x
+            - d0_Gamma_3_z*w_3_t_3 - d0_Gamma_4_z*w_4_t_6 - d0_alpha_5_xz*h_5_y
+        )
+        # (M2) coupling block of M
+        q_in_base_x = (
+        R_xx*rrrrrr_platform_point_x + R_xy*rrrrrr_platform_point_y + R_xz*rrrrrr_platform_point_z
+        )
+        q_in_base_y = (
+        R_yx*rrrrrr_platform_point_x + R_yy*rrrrrr_platform_point_y + R_yz*rrrrrr_platform_point_z
+        )
+        q_in_base_z = (
+        R_zx*rrrrrr_platform_point_x + R_zy*rrrrrr_platform_point_y + R_zz*rrrrrr_platform_point_z
+        )
+        M_ta_t = Q_t_13*q_in_base_z
+        M_ta_t_2 = Q_t_14*q_in_base_y
+        M_ta_t_3 = Q_t_12*q_in_base_z - Q_t_14*q_in_base_x
+        M_ta_t_4 = Q_t_12*q_in_base_y - Q_t_13*q_in_base_x
+        M_ta_t_5 = Q_t_16*q_in_base_z - Q_t_17*q_in_base_y
+        M_ta_t_6 = Q_t_17*q_in_base_x
+        M_ta_t_7 = M_ta_t - M_ta_t_6
+        M_ta_t_8 = Q_t_13*q_in_base_y - Q_t_16*q_in_base_x
+        M_ta_t_9 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y
+        M_ta_t_10 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x
+        M_ta_t_11 = M_ta_t_2 - M_ta_t_6
+        # (rrrrrr-N131) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        d0_c_in_base_x = (
+        axis_x_rrrrrr_axes5_x*d0_c_xx + axis_y_rrrrrr_axes5_in_base_x*d0_c_yx +
+            axis_z_rrrrrr_axes5_in_base_x*d0_c_zx
+        )
+        d0_c_in_base_y = (
+        axis_x_rrrrrr_axes5_y*d0_c_xx + axis_y_rrrrrr_axes5_in_base_y*d0_c_yx +
+            axis_z_rrrrrr_axes5_in_base_y*d0_c_zx
+        )
+        d0_c_in_base_z = (
+        axis_x_rrrrrr_axes5_z*d0_c_xx + axis_y_rrrrrr_axes5_in_base_z*d0_c_yx +
+            axis_z_rrrrrr_axes5_in_base_z*d0_c_zx
+        )
+        d0_c_in_base_x_2 = (
+        axis_x_rrrrrr_axes5_x*d0_c_xy + axis_y_rrrrrr_axes5_in_base_x*d0_c_yy +
+            axis_z_rrrrrr_axes5_in_base_x*d0_c_zy
+        )
+        d0_c_in_base_y_2 = (
+        axis_x_rrrrrr_axes5_y*d0_c_xy + axis_y_rrrrrr_axes5_in_base_y*d0_c_yy +
+            axis_z_rrrrrr_axes5_in_base_y*d0_c_zy
+        )
+        d0_c_in_base_z_2 = (
+        axis_x_rrrrrr_axes5_z*d0_c_xy + axis_y_rrrrrr_axes5_in_base_z*d0_c_yy +
+            axis_z_rrrrrr_axes5_in_base_z*d0_c_zy
+        )
+        d0_c_in_base_x_3 = (
+        axis_x_rrrrrr_axes5_x*d0_c_xz + axis_y_rrrrrr_axes5_in_base_x*d0_c_yz +
+            axis_z_rrrrrr_axes5_in_base_x*d0_c_zz
+        )
+        d0_c_in_base_y_3 = (
+        axis_x_rrrrrr_axes5_y*d0_c_xz + axis_y_rrrrrr_axes5_in_base_y*d0_c_yz +
+            axis_z_rrrrrr_axes5_in_base_y*d0_c_zz
+        )
+        d0_c_in_base_z_3 = (
+        axis_x_rrrrrr_axes5_z*d0_c_xz + axis_y_rrrrrr_axes5_in_base_z*d0_c_yz +
+            axis_z_rrrrrr_axes5_in_base_z*d0_c_zz
+        )
+        d0_c_in_base_y_4 = (
+        axis_x_rrrrrr_axes5_y*d0_c_in_base_x + axis_y_rrrrrr_axes5_in_base_y*d0_c_in_base_x_2 +
+            axis_z_rrrrrr_axes5_in_base_y*d0_c_in_base_x_3
+        )
+        d0_c_in_base_z_4 = (
+        axis_x_rrrrrr_axes5_z*d0_c_in_base_x + axis_y_rrrrrr_axes5_in_base_z*d0_c_in_base_x_2 +
+            axis_z_rrrrrr_axes5_in_base_z*d0_c_in_base_x_3
+        )
+        d0_c_in_base_x_4 = (
+        axis_x_rrrrrr_axes5_x*d0_c_in_base_y + axis_y_rrrrrr_axes5_in_base_x*d0_c_in_base_y_2 +
+            axis_z_rrrrrr_axes5_in_base_x*d0_c_in_base_y_3
+        )
+        d0_c_in_base_y_5 = (
+        axis_x_rrrrrr_axes5_y*d0_c_in_base_y + axis_y_rrrrrr_axes5_in_base_y*d0_c_in_base_y_2 +
+            axis_z_rrrrrr_axes5_in_base_y*d0_c_in_base_y_3
+        )
+        d0_c_in_base_z_5 = (
+        axis_x_rrrrrr_axes5_z*d0_c_in_base_y + axis_y_rrrrrr_axes5_in_base_z*d0_c_in_base_y_2 +
+            axis_z_rrrrrr_axes5_in_base_z*d0_c_in_base_y_3
+        )
+        d0_c_in_base_x_5 = (
+        axis_x_rrrrrr_axes5_x*d0_c_in_base_z + axis_y_rrrrrr_axes5_in_base_x*d0_c_in_base_z_2 +
+            axis_z_rrrrrr_axes5_in_base_x*d0_c_in_base_z_3
+        )
+        d0_c_in_base_y_6 = (
+        axis_x_rrrrrr_axes5_y*d0_c_in_base_z + axis_y_rrrrrr_axes5_in_base_y*d0_c_in_base_z_2 +
+            axis_z_rrrrrr_axes5_in_base_y*d0_c_in_base_z_3
+        )
+        d0_c_in_base_z_6 = (
+        axis_x_rrrrrr_axes5_z*d0_c_in_base_z + axis_y_rrrrrr_axes5_in_base_z*d0_c_in_base_z_2 +
+            axis_z_rrrrrr_axes5_in_base_z*d0_c_in_base_z_3
+        )
+        # (M2) coupling block of M
+        M_ta_t_12 = (
+        M_ta_t - M_ta_t_2 - axis_x_rrrrrr_axes5_x*d0_c_in_base_x -
+            axis_y_rrrrrr_axes5_in_base_x*d0_c_in_base_x_2 -
+            axis_z_rrrrrr_axes5_in_base_x*d0_c_in_base_x_3
+        )
+        M_ta_t_13 = M_ta_t_3 + d0_c_in_base_y_4
+        M_ta_t_14 = M_ta_t_4 - d0_c_in_base_z_4
+        M_ta_t_15 = M_ta_t_5 - d0_c_in_base_x_4
+        M_ta_t_16 = M_ta_t_7 + d0_c_in_base_y_5
+        M_ta_t_17 = M_ta_t_8 - d0_c_in_base_z_5
+        M_ta_t_18 = M_ta_t_9 - d0_c_in_base_x_5
+        M_ta_t_19 = M_ta_t_10 + d0_c_in_base_y_6
+        M_ta_t_20 = M_ta_t_11 - d0_c_in_base_z_6
+        # (rrrrrr-N119) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        d0_G_m1_x = (
+        d0_Gamma_2_x*w_2_t_5 + d0_Gamma_3_x*w_3_t_4 + d0_Gamma_4_x*w_4_t_7 - d0_Gamma_1_x*w_1_t_93
+            - d0_Gamma_5_x*w_5_t_8
+        )
+        d0_G_m1_y = (
+        d0_Gamma_2_y*w_2_t_5 + d0_Gamma_3_y*w_3_t_4 + d0_Gamma_4_y*w_4_t_7 - d0_Gamma_1_y*w_1_t_93
+            - d0_Gamma_5_y*w_5_t_8
+        )
+        d0_G_m1_z = (
+        d0_Gamma_2_z*w_2_t_5 + d0_Gamma_3_z*w_3_t_4 + d0_Gamma_4_z*w_4_t_7 - d0_Gamma_1_z*w_1_t_93
+            - d0_Gamma_5_z*w_5_t_8
+        )
+        # (rrrrrr-N123) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        d0_G_m2_x = (
+        d0_Gamma_2_x*w_2_t_6 + d0_Gamma_3_x*w_3_t_5 + d0_Gamma_4_x*w_4_t_8 - d0_Gamma_1_x*w_1_t_94
+            - d0_Gamma_5_x*w_5_t_9
+        )
+        d0_G_m2_y = (
+        d0_Gamma_2_y*w_2_t_6 + d0_Gamma_3_y*w_3_t_5 + d0_Gamma_4_y*w_4_t_8 - d0_Gamma_1_y*w_1_t_94
+            - d0_Gamma_5_y*w_5_t_9
+        )
+        d0_G_m2_z = (
+        d0_Gamma_2_z*w_2_t_6 + d0_Gamma_3_z*w_3_t_5 + d0_Gamma_4_z*w_4_t_8 - d0_Gamma_1_z*w_1_t_94
+            - d0_Gamma_5_z*w_5_t_9
+        )
+        # (rrrrrr-N120) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        d_G_m1_x = (
+        d_Gamma_2_x*w_2_t_5 + d_Gamma_3_x*w_3_t_4 + d_Gamma_4_x*w_4_t_7 - d_Gamma_1_x*w_1_t_93 -
+            d_Gamma_5_x*w_5_t_8
+        )
+        d_G_m1_y = (
+        d_Gamma_2_y*w_2_t_5 + d_Gamma_3_y*w_3_t_4 + d_Gamma_4_y*w_4_t_7 - d_Gamma_1_y*w_1_t_93 -
+            d_Gamma_5_y*w_5_t_8
+        )
+        d_G_m1_z = (
+        d_Gamma_2_z*w_2_t_5 + d_Gamma_3_z*w_3_t_4 + d_Gamma_4_z*w_4_t_7 - d_Gamma_1_z*w_1_t_93 -
+            d_Gamma_5_t_6*w_5_t_8
+        )
+        # (rrrrrr-N124) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        d_G_m2_x = (
+        d_Gamma_2_x*w_2_t_6 + d_Gamma_3_x*w_3_t_5 + d_Gamma_4_x*w_4_t_8 - d_Gamma_1_x*w_1_t_94 -
+            d_Gamma_5_x*w_5_t_9
+        )
+        d_G_m2_y = (
+        d_Gamma_2_y*w_2_t_6 + d_Gamma_3_y*w_3_t_5 + d_Gamma_4_y*w_4_t_8 - d_Gamma_1_y*w_1_t_94 -
+            d_Gamma_5_y*w_5_t_9
+        )
+        d_G_m2_z = (
+        d_Gamma_2_z*w_2_t_6 + d_Gamma_3_z*w_3_t_5 + d_Gamma_4_z*w_4_t_8 - d_Gamma_1_z*w_1_t_94 -
+            d_Gamma_5_t_6*w_5_t_9
+        )
+        # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
+        n_m1_in_base_x = (
+        axis_y_rrrrrr_axes5_in_base_x*end_p1_r8_x - axis_x_rrrrrr_axes5_x*end_p1_r8_y
+        )
+        n_m1_in_base_y = (
+        axis_y_rrrrrr_axes5_in_base_y*end_p1_r8_x - axis_x_rrrrrr_axes5_y*end_p1_r8_y
+        )
+        n_m1_in_base_z = (
+        axis_y_rrrrrr_axes5_in_base_z*end_p1_r8_x - axis_x_rrrrrr_axes5_z*end_p1_r8_y
+        )
+        # (rrrrrr-N120) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        d_G_m1_in_base_x = (
+        axis_x_rrrrrr_axes5_x*d_G_m1_x + axis_y_rrrrrr_axes5_in_base_x*d_G_m1_y +
+            axis_z_rrrrrr_axes5_in_base_x*d_G_m1_z
+        )
+        d_G_m1_in_base_y = (
+        axis_x_rrrrrr_axes5_y*d_G_m1_x + axis_y_rrrrrr_axes5_in_base_y*d_G_m1_y +
+            axis_z_rrrrrr_axes5_in_base_y*d_G_m1_z
+        )
+        d_G_m1_in_base_z = (
+        axis_x_rrrrrr_axes5_z*d_G_m1_x + axis_y_rrrrrr_axes5_in_base_z*d_G_m1_y +
+            axis_z_rrrrrr_axes5_in_base_z*d_G_m1_z
+        )
+        # (rrrrrr-V12) direction 2 of the moment that the platform joint transmits
+        n_m2_in_base_x = (
+        axis_z_rrrrrr_axes5_in_base_x*end_p1_r8_y - axis_y_rrrrrr_axes5_in_base_x*end_p1_r6_x
+        )
+        n_m2_in_base_y = (
+        axis_z_rrrrrr_axes5_in_base_y*end_p1_r8_y - axis_y_rrrrrr_axes5_in_base_y*end_p1_r6_x
+        )
+        n_m2_in_base_z = (
+        axis_z_rrrrrr_axes5_in_base_z*end_p1_r8_y - axis_y_rrrrrr_axes5_in_base_z*end_p1_r6_x
+        )
+        # (rrrrrr-N124) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        d_G_m2_in_base_x = (
+        axis_x_rrrrrr_axes5_x*d_G_m2_x + axis_y_rrrrrr_axes5_in_base_x*d_G_m2_y +
+            axis_z_rrrrrr_axes5_in_base_x*d_G_m2_z
+        )
+        d_G_m2_in_base_y = (
+        axis_x_rrrrrr_axes5_y*d_G_m2_x + axis_y_rrrrrr_axes5_in_base_y*d_G_m2_y +
+            axis_z_rrrrrr_axes5_in_base_y*d_G_m2_z
+        )
+        d_G_m2_in_base_z = (
+        axis_x_rrrrrr_axes5_z*d_G_m2_x + axis_y_rrrrrr_axes5_in_base_z*d_G_m2_y +
+            axis_z_rrrrrr_axes5_in_base_z*d_G_m2_z
+        )
+        # (rrrrrr-N128) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        d_G_m_xx = d_G_m1_in_base_x*n_m1_in_base_x + d_G_m2_in_base_x*n_m2_in_base_x
+        d_G_m_xy = d_G_m1_in_base_y*n_m1_in_base_x + d_G_m2_in_base_y*n_m2_in_base_x
+        d_G_m_xz = d_G_m1_in_base_z*n_m1_in_base_x + d_G_m2_in_base_z*n_m2_in_base_x
+        d_G_m_yx = d_G_m1_in_base_x*n_m1_in_base_y + d_G_m2_in_base_x*n_m2_in_base_y
+        # (rrrrrr-N119) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        d0_G_m1_in_base_y = (
+        axis_x_rrrrrr_axes5_y*d0_G_m1_x + axis_y_rrrrrr_axes5_in_base_y*d0_G_m1_y +
+            axis_z_rrrrrr_axes5_in_base_y*d0_G_m1_z
+        )
+        d0_G_m1_in_base_z = (
+        axis_x_rrrrrr_axes5_z*d0_G_m1_x + axis_y_rrrrrr_axes5_in_base_z*d0_G_m1_y +
+            axis_z_rrrrrr_axes5_in_base_z*d0_G_m1_z
+        )
+        # (rrrrrr-N123) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        d0_G_m2_in_base_y = (
+        axis_x_rrrrrr_axes5_y*d0_G_m2_x + axis_y_rrrrrr_axes5_in_base_y*d0_G_m2_y +
+            axis_z_rrrrrr_axes5_in_base_y*d0_G_m2_z
+        )
+        d0_G_m2_in_base_z = (
+        axis_x_rrrrrr_axes5_z*d0_G_m2_x + axis_y_rrrrrr_axes5_in_base_z*d0_G_m2_y +
+            axis_z_rrrrrr_axes5_in_base_z*d0_G_m2_z
+        )
+        # (M3) rotational block of M
+        M_aa_t = (
+        M_ta_t_5*q_in_base_z + d0_c_in_base_x_5*q_in_base_y + d_G_m_xy*q_in_base_z -
+            M_ta_t_9*q_in_base_y - d0_c_in_base_x_4*q_in_base_z - d_G_m_xz*q_in_base_y -
+            n_m1_in_base_x*(axis_x_rrrrrr_axes5_x*d0_G_m1_x +
+            axis_y_rrrrrr_axes5_in_base_x*d0_G_m1_y + axis_z_rrrrrr_axes5_in_base_x*d0_G_m1_z) -
+            n_m2_in_base_x*(axis_x_rrrrrr_axes5_x*d0_G_m2_x +
+            axis_y_rrrrrr_axes5_in_base_x*d0_G_m2_y + axis_z_rrrrrr_axes5_in_base_x*d0_G_m2_z)
+        )
+        M_aa_t_2 = (
+        M_ta_t_7*q_in_base_z + d0_G_m1_in_base_y*n_m1_in_base_x + d0_G_m2_in_base_y*n_m2_in_base_x
+            + d0_c_in_base_y_5*q_in_base_z + d_G_m_xx*q_in_base_z - M_ta_t_10*q_in_base_y -
+            d0_c_in_base_y_6*q_in_base_y - d_G_m_xz*q_in_base_x
+        )
+        M_aa_t_3 = (
+        M_ta_t_11*q_in_base_y + d0_G_m1_in_base_z*n_m1_in_base_x +
+            d0_G_m2_in_base_z*n_m2_in_base_x + d0_c_in_base_z_5*q_in_base_z + d_G_m_xy*q_in_base_x
+            - M_ta_t_8*q_in_base_z - d0_c_in_base_z_6*q_in_base_y - d_G_m_xx*q_in_base_y
+        )
+        M_aa_t_4 = (
+        M_ta_t_3*q_in_base_z + d0_c_in_base_y_4*q_in_base_z +
+            q_in_base_x*(d_G_m1_in_base_z*n_m1_in_base_y + d_G_m2_in_base_z*n_m2_in_base_y) -
+            M_ta_t_10*q_in_base_x - d0_G_m1_in_base_y*n_m1_in_base_y -
+            d0_G_m2_in_base_y*n_m2_in_base_y - d0_c_in_base_y_6*q_in_base_x - d_G_m_yx*q_in_base_z
+        )
+        M_aa_t_5 = (
+        M_ta_t_4*q_in_base_z + d0_G_m1_in_base_z*n_m1_in_base_y + d0_G_m2_in_base_z*n_m2_in_base_y
+            + d0_c_in_base_z_6*q_in_base_x + q_in_base_x*(d_G_m1_in_base_y*n_m1_in_base_y +
+            d_G_m2_in_base_y*n_m2_in_base_y) - M_ta_t_11*q_in_base_x -
+            d0_c_in_base_z_4*q_in_base_z - d_G_m_yx*q_in_base_y
+        )
+        M_aa_t_6 = (
+        M_ta_t_4*q_in_base_y + d0_c_in_base_z_5*q_in_base_x +
+            q_in_base_y*(d_G_m1_in_base_x*n_m1_in_base_z + d_G_m2_in_base_x*n_m2_in_base_z) -
+            M_ta_t_8*q_in_base_x - d0_G_m1_in_base_z*n_m1_in_base_z -
+            d0_G_m2_in_base_z*n_m2_in_base_z - d0_c_in_base_z_4*q_in_base_y -
+            q_in_base_x*(d_G_m1_in_base_y*n_m1_in_base_z + d_G_m2_in_base_y*n_m2_in_base_z)
+        )
+        # (rrrrrr-V1) velocity of the connection point
+        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
+        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
+        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
+        S_dot_x = S_dot_t + t_dot_x
+        S_dot_y = S_dot_t_2 + t_dot_y
+        S_dot_z = S_dot_t_3 + t_dot_z
+        # (rrrrrr-V33) rate at which the joints turn along moment direction 1
+        eta_1 = n_m1_in_base_x*omega_x + n_m1_in_base_y*omega_y + n_m1_in_base_z*omega_z
+        # (rrrrrr-V34) rate at which the joints turn along moment direction 2
+        eta_2 = n_m2_in_base_x*omega_x + n_m2_in_base_y*omega_y + n_m2_in_base_z*omega_z
+        # (rrrrrr-V1) velocity of the connection point
+        S_dot_tip_x = (
+        S_dot_x*axis_x_rrrrrr_axes5_x + S_dot_y*axis_x_rrrrrr_axes5_y +
+            S_dot_z*axis_x_rrrrrr_axes5_z
+        )
+        S_dot_tip_y = (
+        S_dot_x*axis_y_rrrrrr_axes5_in_base_x + S_dot_y*axis_y_rrrrrr_axes5_in_base_y +
+            S_dot_z*axis_y_rrrrrr_axes5_in_base_z
+        )
+        S_dot_tip_z = (
+        S_dot_x*axis_z_rrrrrr_axes5_in_base_x + S_dot_y*axis_z_rrrrrr_axes5_in_base_y +
+            S_dot_z*axis_z_rrrrrr_axes5_in_base_z
+        )
+        # (rrrrrr-V35) rate of joint 1
+        qd_1_t = eta_1*size
+        qd_1_t_2 = eta_2*size
+        qd_1_t_3 = (
+        inv_w_1_t_222*(S_dot_tip_x*w_1_t_83 + S_dot_tip_z*w_1_t_85 + qd_1_t*w_1_t_86 +
+            qd_1_t_2*w_1_t_87 - S_dot_tip_y*w_1_t_84)
+        )
+        qd_1_t_4 = (
+        inv_w_1_t_194*(S_dot_tip_x*w_1_t_71 + S_dot_tip_z*w_1_t_73 + qd_1_t*w_1_t_74 +
+            qd_1_t_2*w_1_t_75 - S_dot_tip_y*w_1_t_72 - qd_1_t_3*w_1_t_76)
+        )
+        qd_1_t_5 = (
+        inv_w_1_t_150*(S_dot_tip_y*w_1_t_54 + qd_1_t_3*w_1_t_64 + qd_1_t_4*w_1_t_58 -
+            S_dot_tip_x*w_1_t_53 - S_dot_tip_z*w_1_t_55 - qd_1_t*w_1_t_56 - qd_1_t_2*w_1_t_57)
+        )
+        qd_1_t_6 = (
+        inv_w_1_t_101*(S_dot_tip_z*w_1_t_33 + qd_1_t*w_1_t_34 + qd_1_t_2*w_1_t_35 +
+            qd_1_t_3*w_1_t_47 + qd_1_t_4*w_1_t_42 - S_dot_tip_y*w_1_t_32 - qd_1_t_5*w_1_t_36)
+        )
+        qd_1_t_7 = (
+        inv_w_1_t_69*(S_dot_tip_y*w_1_t_16 + qd_1_t_2*w_1_t_17 + qd_1_t_3*w_1_t_28 +
+            qd_1_t_5*w_1_t_21 - qd_1_t_4*w_1_t_25 - qd_1_t_6*w_1_t_18)
+        )
+        # (rrrrrr-V40) angular velocity of link 1
+        omega_1_t = qd_1_t_5*s_2
+        omega_1_t_2 = c_2_t*qd_1_t_5
+        # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
+        zeta_2_x = omega_1_t_2*qd_1_t_4
+        zeta_2_y = omega_1_t*qd_1_t_4
+        # (rrrrrr-V42) angular velocity of link 2
+        omega_2_r0_x = omega_1_t_2*s_3 - c_3*omega_1_t
+        omega_2_r0_y = c_3*omega_1_t_2 + omega_1_t*s_3
+        # (rrrrrr-A5) angular acceleration of link 3 from the turning of axis 3
+        zeta_3_x = omega_2_r0_y*qd_1_t_3
+        zeta_3_y = omega_2_r0_x*qd_1_t_3
+        # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
+        zeta_2_r0_x = c_3*zeta_2_x + s_3*zeta_2_y
+        zeta_2_r0_y = c_3*zeta_2_y - s_3*zeta_2_x
+        # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
+        beta_3_x = zeta_2_r0_x + zeta_3_x
+        beta_3_y = zeta_2_r0_y - zeta_3_y
+        # (rrrrrr-V44) angular velocity of link 3
+        omega_3_z = qd_1_t_3 + qd_1_t_4
+        omega_3_r1_x = omega_3_z*s_4 - c_4_t*omega_2_r0_y
+        omega_3_r1_y = -c_4_t*omega_3_z - omega_2_r0_y*s_4
+        # (rrrrrr-A7) angular acceleration of link 4 from the turning of axis 4
+        zeta_4_x = omega_3_r1_y*qd_1_t_6
+        zeta_4_y = omega_3_r1_x*qd_1_t_6
+        # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
+        beta_3_t = beta_3_y*c_4_t
+        beta_3_t_2 = beta_3_y*s_4
+        # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
+        beta_4_x = zeta_4_x - beta_3_t
+        beta_4_y = -beta_3_t_2 - zeta_4_y
+        # (rrrrrr-V46) angular velocity of link 4
+        omega_4_z = omega_2_r0_x + qd_1_t_6
+        omega_4_t = c_5_t*omega_3_r1_y
+        omega_4_r1_x = omega_4_z*s_5 - omega_4_t
+        omega_4_t_2 = omega_3_r1_y*s_5
+        omega_4_r1_y = -omega_4_t_2 - c_5_t*omega_4_z
+        # (rrrrrr-A9) angular acceleration of link 5 from the turning of axis 5
+        zeta_5_x = omega_4_r1_y*qd_1_t_7
+        zeta_5_y = omega_4_r1_x*qd_1_t_7
+        # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
+        beta_4_t = beta_3_x*s_5
+        beta_4_r1_x = beta_4_t - beta_4_y*c_5_t
+        beta_4_t_2 = beta_3_x*c_5_t
+        beta_4_r1_y = -beta_4_t_2 - beta_4_y*s_5
+        # (rrrrrr-A10) angular acceleration of link 5 at zero joint accelerations
+        beta_5_x = beta_4_r1_x + zeta_5_x
+        beta_5_y = beta_4_r1_y - zeta_5_y
+        # (rrrrrr-V48) angular velocity of link 5
+        omega_5_z = omega_3_r1_x + qd_1_t_7
+        # (rrrrrr-A14) rate of moment direction 1
+        nd_m1_t = end_p1_r8_y*omega_4_r1_y
+        omega_tip_x = (
+        axis_x_rrrrrr_axes5_x*omega_x + axis_x_rrrrrr_axes5_y*omega_y +
+            axis_x_rrrrrr_axes5_z*omega_z
+        )
+        omega_tip_y = (
+        axis_y_rrrrrr_axes5_in_base_x*omega_x + axis_y_rrrrrr_axes5_in_base_y*omega_y +
+            axis_y_rrrrrr_axes5_in_base_z*omega_z
+        )
+        omega_tip_z = (
+        axis_z_rrrrrr_axes5_in_base_x*omega_x + axis_z_rrrrrr_axes5_in_base_y*omega_y +
+            axis_z_rrrrrr_axes5_in_base_z*omega_z
+        )
+        nd_m1_t_2 = end_p1_r8_x*omega_tip_z - end_p1_r6_x*omega_tip_x
+        nd_m1_x = -nd_m1_t_2 - end_p1_r6_x*omega_4_r1_x
+        nd_m1_y = end_p1_r6_x*omega_tip_y - end_p1_r6_x*omega_4_r1_y - end_p1_r8_y*omega_tip_z
+        # (rrrrrr-A15) bias of the angular acceleration along moment direction 1
+        nu_1_t = beta_5_x*end_p1_r8_y - beta_5_y*end_p1_r8_x
+        nu_1_t_2 = omega_4_r1_x - omega_tip_x
+        nu_1_t_3 = omega_4_r1_y - omega_tip_y
+        nu_1_t_4 = omega_5_z - omega_tip_z
+        nu_1_t_5 = (
+        nd_m1_x*nu_1_t_2 + nd_m1_y*nu_1_t_3 + nu_1_t_4*(nd_m1_t + end_p1_r8_x*omega_4_r1_x)
+        )
+        nu_1 = nu_1_t - nu_1_t_5
+        # (rrrrrr-A16) rate of moment direction 2
+        nd_m2_y = end_p1_r8_x*omega_tip_y - end_p1_r8_x*omega_4_r1_y - end_p1_r8_y*omega_tip_x
+        nd_m2_z = nd_m1_t_2 - end_p1_r8_x*omega_5_z
+        # (rrrrrr-A17) bias of the angular acceleration along moment direction 2
+        nu_2_t = beta_5_y*end_p1_r6_x - beta_4_x*end_p1_r8_y
+        nu_2_t_2 = (
+        nd_m2_y*nu_1_t_3 + nd_m2_z*nu_1_t_4 + nu_1_t_2*(nd_m1_t + end_p1_r6_x*omega_5_z)
+        )
+        nu_2 = nu_2_t - nu_2_t_2
+        # (rrrrrr-V43) centripetal tensor of link 2
+        W_2_t = omega_1_t*omega_1_t
+        W_2_t_2 = omega_1_t_2*omega_1_t_2
+        W_2_t_3 = qd_1_t_4*qd_1_t_4
+        W_2_xy = omega_1_t*omega_1_t_2
+        # (rrrrrr-V45) centripetal tensor of link 3
+        W_3_t = omega_2_r0_x*omega_2_r0_x
+        W_3_t_2 = omega_2_r0_y*omega_2_r0_y
+        W_3_t_3 = omega_3_z*omega_3_z
+        W_3_xx = W_3_t_2 + W_3_t_3
+        W_3_xy = omega_2_r0_x*omega_2_r0_y
+        W_3_xz = omega_2_r0_x*omega_3_z
+        W_3_yz = omega_2_r0_y*omega_3_z
+        # (rrrrrr-V47) centripetal tensor of link 4
+        W_4_t = omega_3_r1_x*omega_3_r1_x
+        W_4_t_2 = omega_3_r1_y*omega_3_r1_y
+        W_4_t_3 = omega_4_z*omega_4_z
+        W_4_xy = omega_3_r1_x*omega_3_r1_y
+        W_4_xz = omega_3_r1_x*omega_4_z
+        W_4_yz = omega_3_r1_y*omega_4_z
+        # (rrrrrr-V49) centripetal tensor of link 5
+        W_5_t = omega_4_r1_x*omega_4_r1_x
+        W_5_t_2 = omega_4_r1_y*omega_4_r1_y
+        W_5_t_3 = omega_5_z*omega_5_z
+        W_5_xx = W_5_t_2 + W_5_t_3
+        W_5_xy = omega_4_r1_x*omega_4_r1_y
+        W_5_xz = omega_4_r1_x*omega_5_z
+        W_5_yz = omega_4_r1_y*omega_5_z
+        # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
+        bias_t = rrrrrr_joint2_offset_x*s_2
+        bias_t_2 = c_2_t*rrrrrr_joint2_offset_x
+        d_2_r2_x = bias_t*c_3 - bias_t_2*s_3
+        d_2_r2_y = -bias_t*s_3 - bias_t_2*c_3
+        bias_t_3 = c_4_t*d_2_r2_y
+        bias_t_4 = d_2_r2_y*s_4
+        d_2_r6_x = bias_t_4*c_5_t + d_2_r2_x*s_5
+        d_2_r6_y = bias_t_4*s_5 - c_5_t*d_2_r2_x
+        # (rrrrrr-V40) angular velocity of link 1
+        omega_1_x = e_1_r6_x*qd_1_t_5
+        omega_1_y = e_1_r6_y*qd_1_t_5
+        omega_1_z = qd_1_t_5*v_1_t
+        # (rrrrrr-V41) centripetal tensor of link 1
+        W_1_t = omega_1_x*omega_1_x
+        W_1_t_2 = omega_1_y*omega_1_y
+        W_1_t_3 = omega_1_z*omega_1_z
+        W_1_xy = omega_1_x*omega_1_y
+        W_1_xz = omega_1_x*omega_1_z
+        W_1_yz = omega_1_y*omega_1_z
+        # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
+        bias_t_5 = c_3*rrrrrr_joint3_offset_x
+        bias_t_6 = rrrrrr_joint3_offset_x*s_3
+        bias_t_7 = bias_t_6*c_4_t
+        bias_t_8 = bias_t_6*s_4
+        d_3_r4_x = bias_t_5*s_5 - bias_t_8*c_5_t
+        d_3_r4_y = -bias_t_5*c_5_t - bias_t_8*s_5
+        # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
+        zeta_2_t = c_4_t*zeta_2_r0_y
+        zeta_2_t_2 = s_4*zeta_2_r0_y
+        zeta_2_r4_x = c_5_t*zeta_2_t_2 + s_5*zeta_2_r0_x
+        zeta_2_r4_y = s_5*zeta_2_t_2 - c_5_t*zeta_2_r0_x
+        # (rrrrrr-V42) angular velocity of link 2
+        omega_2_x = qd_1_t_4*v_2_t - omega_1_x
+        omega_2_y = qd_1_t_4*v_2_t_2 - omega_1_y
+        omega_2_z = omega_1_z + qd_1_t_4*s_4
+        # (rrrrrr-V43) centripetal tensor of link 2
+        W_2_t_4 = omega_2_x*omega_2_x
+        W_2_t_5 = omega_2_y*omega_2_y
+        W_2_t_6 = omega_2_z*omega_2_z
+        W_2_xy_2 = omega_2_x*omega_2_y
+        W_2_xz = omega_2_x*omega_2_z
+        W_2_yz = omega_2_y*omega_2_z
+        # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
+        bias_t_9 = rrrrrr_joint4_offset_x*s_5
+        bias_t_10 = c_5_t*rrrrrr_joint4_offset_x
+        # (rrrrrr-V44) angular velocity of link 3
+        omega_3_r3_x = omega_2_r0_x*s_5 - omega_4_t
+        omega_3_r3_y = -omega_4_t_2 - c_5_t*omega_2_r0_x
+        # (rrrrrr-V45) centripetal tensor of link 3
+        W_3_xy_2 = omega_3_r3_x*omega_3_r3_y
+        # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
+        bias_t_11 = rrrrrr_joint5_offset_x*s_5
+        bias_t_12 = c_5_t*rrrrrr_joint5_offset_x
+        bias_t_13 = W_5_xy + beta_4_x
+        bias_x = (
+        W_1_xy*d_2_r6_y + W_1_xz*bias_t_3 + bias_t_7*(W_2_xz + zeta_2_r4_y) + d_3_r4_y*(W_2_xy_2 +
+            zeta_2_t) - W_5_xx*rrrrrr_platform_joint_offset_x - bias_t_10*(W_3_xy_2 + beta_3_t) -
+            bias_t_11*(W_4_t + W_5_t_2) - bias_t_12*(W_5_xy - beta_4_x) - bias_t_9*(W_4_t +
+            omega_3_r3_y*omega_3_r3_y) - d_2_r6_x*(W_1_t_2 + W_1_t_3) - d_3_r4_x*(W_2_t_5 +
+            W_2_t_6)
+        )
+        bias_y = (
+        W_1_xy*d_2_r6_x + W_1_yz*bias_t_3 + bias_t_10*(W_4_t + omega_3_r3_x*omega_3_r3_x) +
+            bias_t_11*bias_t_13 + bias_t_12*(W_4_t + W_5_t) +
+            bias_t_13*rrrrrr_platform_joint_offset_x + bias_t_7*(W_2_yz - zeta_2_r4_x) +
+            bias_t_9*(W_3_xy_2 - beta_3_t) + d_3_r4_x*(W_2_xy_2 - zeta_2_t) - d_2_r6_y*(W_1_t +
+            W_1_t_3) - d_3_r4_y*(W_2_t_4 + W_2_t_6)
+        )
+        bias_z = (
+        bias_t_11*(omega_3_r1_x*omega_4_r1_x - beta_4_r1_y) + bias_t_3*(W_1_t + W_1_t_2) +
+            bias_t_9*(beta_4_t_2 + omega_3_r1_x*omega_3_r3_x - beta_3_t_2*s_5) + d_3_r4_x*(W_2_xz
+            - zeta_2_r4_y) + d_3_r4_y*(W_2_yz + zeta_2_r4_x) +
+            rrrrrr_platform_joint_offset_x*(W_5_xz - beta_5_y) - W_1_xz*d_2_r6_x - W_1_yz*d_2_r6_y
+            - bias_t_10*(beta_4_t + beta_3_t_2*c_5_t + omega_3_r1_x*omega_3_r3_y) -
+            bias_t_12*(beta_4_r1_x + omega_3_r1_x*omega_4_r1_y) - bias_t_7*(W_2_t_4 + W_2_t_5)
+        )
+        # (rrrrrr-A1) centripetal acceleration of the connection point
+        u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z
+        u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x
+        u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y
+        u_1_tip_x = (
+        axis_x_rrrrrr_axes5_x*u_1_x + axis_x_rrrrrr_axes5_y*u_1_y + axis_x_rrrrrr_axes5_z*u_1_z
+        )
+        u_1_tip_y = (
+        axis_y_rrrrrr_axes5_in_base_x*u_1_x + axis_y_rrrrrr_axes5_in_base_y*u_1_y +
+            axis_y_rrrrrr_axes5_in_base_z*u_1_z
+        )
+        u_1_tip_z = (
+        axis_z_rrrrrr_axes5_in_base_x*u_1_x + axis_z_rrrrrr_axes5_in_base_y*u_1_y +
+            axis_z_rrrrrr_axes5_in_base_z*u_1_z
+        )
+        # (rrrrrr-A13) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        rel_o_x = u_1_tip_x - bias_x
+        rel_o_y = u_1_tip_y - bias_y
+        rel_o_z = u_1_tip_z - bias_z
+        # (rrrrrr-A21) remainder without the acceleration in: acceleration of joint 1
+        qdd_1_o_t = nu_1*size
+        qdd_1_o_t_2 = nu_2*size
+        qdd_1_o_t_3 = (
+        inv_w_1_t_222*(qdd_1_o_t*w_1_t_86 + qdd_1_o_t_2*w_1_t_87 + rel_o_x*w_1_t_83 +
+            rel_o_z*w_1_t_85 - rel_o_y*w_1_t_84)
+        )
+        qdd_1_o_t_4 = (
+        inv_w_1_t_194*(qdd_1_o_t*w_1_t_74 + qdd_1_o_t_2*w_1_t_75 + rel_o_x*w_1_t_71 +
+            rel_o_z*w_1_t_73 - qdd_1_o_t_3*w_1_t_76 - rel_o_y*w_1_t_72)
+        )
+        qdd_1_o_t_5 = (
+        inv_w_1_t_150*(qdd_1_o_t_3*w_1_t_64 + qdd_1_o_t_4*w_1_t_58 + rel_o_y*w_1_t_54 -
+            qdd_1_o_t*w_1_t_56 - qdd_1_o_t_2*w_1_t_57 - rel_o_x*w_1_t_53 - rel_o_z*w_1_t_55)
+        )
+        qdd_1_o_t_6 = (
+        inv_w_1_t_101*(qdd_1_o_t*w_1_t_34 + qdd_1_o_t_2*w_1_t_35 + qdd_1_o_t_3*w_1_t_47 +
+            qdd_1_o_t_4*w_1_t_42 + rel_o_z*w_1_t_33 - qdd_1_o_t_5*w_1_t_36 - rel_o_y*w_1_t_32)
+        )
+        # (rrrrrr-A31) remainder without the acceleration in: angular acceleration of link 1
+        alpha_1_o_t = qdd_1_o_t_5*s_2
+        alpha_1_o_t_2 = c_2_t*qdd_1_o_t_5
+        # (rrrrrr-A35) remainder without the acceleration in: angular acceleration of link 2
+        alpha_2_o_x = zeta_2_x - alpha_1_o_t
+        alpha_2_o_y = alpha_1_o_t_2 + zeta_2_y
+        # (rrrrrr-A37) remainder of the acceleration tensor of link 2
+        B_2_o_xy = -W_2_xy - qdd_1_o_t_4
+        B_2_o_yx = qdd_1_o_t_4 - W_2_xy
+        B_2_o_zx = -alpha_2_o_y - zeta_2_y
+        B_2_o_zy = alpha_2_o_x + zeta_2_x
+        # (rrrrrr-A55) remainder without the acceleration in: acceleration of the origin of joint 3
+        a_o3_o_t = rrrrrr_joint3_offset_x*(W_2_t_2 + W_2_t_3)
+        a_o3_o_t_2 = B_2_o_yx*rrrrrr_joint3_offset_x
+        a_o3_o_t_3 = B_2_o_zx*rrrrrr_joint3_offset_x
+        # (rrrrrr-A39) remainder without the acceleration in: angular acceleration of link 3
+        alpha_3_o_x = zeta_3_x + alpha_2_o_x*c_3 + alpha_2_o_y*s_3
+        alpha_3_o_y = alpha_2_o_y*c_3 - zeta_3_y - alpha_2_o_x*s_3
+        alpha_3_o_z = qdd_1_o_t_3 + qdd_1_o_t_4
+        # (rrrrrr-A41) remainder of the acceleration tensor of link 3
+        B_3_o_xy = W_3_xy - alpha_3_o_z
+        B_3_o_xz = W_3_xz + alpha_3_o_y
+        B_3_o_yx = W_3_xy + alpha_3_o_z
+        B_3_o_yz = W_3_yz - alpha_3_o_x
+        B_3_o_zx = W_3_xz - alpha_3_o_y
+        B_3_o_zy = W_3_yz + alpha_3_o_x
+        # (rrrrrr-A55) remainder without the acceleration in: acceleration of the origin of joint 3
+        a_o3_o_r0_x = a_o3_o_t_2*s_3 - a_o3_o_t*c_3
+        a_o3_o_r0_y = a_o3_o_t*s_3 + a_o3_o_t_2*c_3
+        # (rrrrrr-A57) remainder without the acceleration in: acceleration of the origin of joint 4
+        a_o4_o_x = a_o3_o_r0_x - W_3_xx*rrrrrr_joint4_offset_x
+        a_o4_o_y = a_o3_o_r0_y + B_3_o_yx*rrrrrr_joint4_offset_x
+        a_o4_o_z = a_o3_o_t_3 + B_3_o_zx*rrrrrr_joint4_offset_x
+        # (rrrrrr-N16) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
+        g_r1_x = g_r0_y*s_1 - c_1_t*g_r0_x
+        g_r1_y = -c_1_t*g_r0_y - g_r0_x*s_1
+        g_r3_x = g_r0_z*s_2 - c_2_t*g_r1_y
+        g_r3_y = -c_2_t*g_r0_z - g_r1_y*s_2
+        g_r4_x = c_3*g_r3_x + g_r3_y*s_3
+        g_r4_y = c_3*g_r3_y - g_r3_x*s_3
+        g_r6_x = g_r1_x*s_4 - c_4_t*g_r4_y
+        g_r6_y = -c_4_t*g_r1_x - g_r4_y*s_4
+        acc_4_o_x = a_o4_o_z*s_4 - g_r6_x - a_o4_o_y*c_4_t
+        acc_4_o_y = -g_r6_y - a_o4_o_y*s_4 - a_o4_o_z*c_4_t
+        acc_4_o_z = a_o4_o_x - g_r4_x
+        # (rrrrrr-A43) remainder without the acceleration in: angular acceleration of link 4
+        alpha_4_o_x = zeta_4_x + alpha_3_o_z*s_4 - alpha_3_o_y*c_4_t
+        alpha_4_o_y = -zeta_4_y - alpha_3_o_y*s_4 - alpha_3_o_z*c_4_t
+        alpha_4_o_z = alpha_3_o_x + qdd_1_o_t_6
+        # (rrrrrr-A45) remainder of the acceleration tensor of link 4
+        B_4_o_xy = W_4_xy - alpha_4_o_z
+        B_4_o_xz = W_4_xz + alpha_4_o_y
+        B_4_o_yx = W_4_xy + alpha_4_o_z
+        B_4_o_yz = W_4_yz - alpha_4_o_x
+        B_4_o_zx = W_4_xz - alpha_4_o_y
+        B_4_o_zy = W_4_yz + alpha_4_o_x
+        # (rrrrrr-N73) remainder without the acceleration in: inertia moment of the links that turn with link 4, about their reference points
+        mu_4_o_x = (
+        B_4_o_yx*J_4_xz + B_4_o_zx*J_4_yz + B_4_o_zy*Sigma_4_yy - B_4_o_yz*Sigma_4_zz -
+            J_4_xy*(W_4_t_2 - W_4_t_3) - acc_4_o_y*h_4_x - acc_4_o_z*h_4_y
+        )
+        mu_4_o_y = (
+        B_4_o_xy*J_4_xy + B_4_o_xz*Sigma_4_zz + acc_4_o_x*h_4_x - B_4_o_zx*Sigma_4_xx -
+            B_4_o_zy*J_4_yz - J_4_xz*(W_4_t - W_4_t_3) - acc_4_o_z*h_4_z
+        )
+        mu_4_o_z = (
+        B_4_o_yx*Sigma_4_xx + acc_4_o_x*h_4_y + acc_4_o_y*h_4_z - B_4_o_xy*Sigma_4_yy -
+            B_4_o_xz*J_4_xy - B_4_o_yz*J_4_xz - J_4_yz*(W_4_t - W_4_t_2)
+        )
+        # (rrrrrr-N22) remainder without the acceleration in: acceleration of the reference point of link 5, less gravity
+        acc_5_o_x = u_1_tip_x + c_5_t*g_r6_y - g_r4_x*s_5
+        acc_5_o_y = u_1_tip_y + c_5_t*g_r4_x + g_r6_y*s_5
+        acc_5_o_z = u_1_tip_z - g_r6_x
+        # (rrrrrr-A49) remainder without the acceleration in: angular acceleration of link 5
+        alpha_5_o_x = zeta_5_x + alpha_4_o_z*s_5 - alpha_4_o_y*c_5_t
+        alpha_5_o_y = -zeta_5_y - alpha_4_o_y*s_5 - alpha_4_o_z*c_5_t
+        alpha_5_o_z = (
+        alpha_4_o_x + inv_w_1_t_69*(qdd_1_o_t_2*w_1_t_17 + qdd_1_o_t_3*w_1_t_28 +
+            qdd_1_o_t_5*w_1_t_21 + rel_o_y*w_1_t_16 - qdd_1_o_t_4*w_1_t_25 - qdd_1_o_t_6*w_1_t_18)
+        )
+        # (rrrrrr-A51) remainder of the acceleration tensor of link 5
+        B_5_o_xy = W_5_xy - alpha_5_o_z
+        B_5_o_xz = W_5_xz + alpha_5_o_y
+        B_5_o_yx = W_5_xy + alpha_5_o_z
+        B_5_o_yz = W_5_yz - alpha_5_o_x
+        B_5_o_zx = W_5_xz - alpha_5_o_y
+        B_5_o_zy = W_5_yz + alpha_5_o_x
+        # (rrrrrr-N65) remainder without the acceleration in: inertia moment of the links that turn with link 5, about their reference points
+        mu_5_o_x = (
+        B_5_o_yx*J_5_xz + B_5_o_zy*Sigma_5_yy + J_5_yz*(W_5_t_2 - W_5_t_3) + acc_5_o_z*h_5_y -
+            B_5_o_yz*Sigma_5_zz - B_5_o_zx*J_5_xy - acc_5_o_y*h_5_z
+        )
+        mu_5_o_y = (
+        B_5_o_xz*Sigma_5_zz + B_5_o_zy*J_5_xy + acc_5_o_x*h_5_z - B_5_o_xy*J_5_yz -
+            B_5_o_zx*Sigma_5_xx - J_5_xz*(W_5_t - W_5_t_3) - acc_5_o_z*h_5_x
+        )
+        mu_5_o_z = (
+        B_5_o_xz*J_5_yz + B_5_o_yx*Sigma_5_xx + J_5_xy*(W_5_t - W_5_t_2) + acc_5_o_y*h_5_x -
+            B_5_o_xy*Sigma_5_yy - B_5_o_yz*J_5_xz - acc_5_o_x*h_5_y
+        )
+        # (rrrrrr-N75) remainder without the acceleration in: moment about joint 4 of the links from 4 outwards, the force at the connection point left out
+        N_4_o_x = mu_4_o_x + mu_5_o_z
+        N_4_o_y = mu_4_o_y - c_5_t*mu_5_o_x - mu_5_o_y*s_5
+        N_4_o_z = mu_4_o_z + mu_5_o_x*s_5 - c_5_t*mu_5_o_y
+        # (rrrrrr-N20) remainder without the acceleration in: inertia force of link 4 less its weight
+        f_4_o_x = (
+        B_4_o_xz*h_4_x + acc_4_o_x*rrrrrr_link4_mass - B_4_o_xy*h_4_y - h_4_z*(W_4_t_2 + W_4_t_3)
+        )
+        f_4_o_y = (
+        B_4_o_yx*h_4_z + B_4_o_yz*h_4_x + acc_4_o_y*rrrrrr_link4_mass + h_4_y*(W_4_t + W_4_t_3)
+        )
+        f_4_o_z = (
+        B_4_o_zx*h_4_z + acc_4_o_z*rrrrrr_link4_mass - B_4_o_zy*h_4_y - h_4_x*(W_4_t + W_4_t_2)
+        )
+        # (rrrrrr-N10) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        acc_3_o_x = a_o3_o_r0_x - g_r4_x
+        acc_3_o_y = a_o3_o_r0_y - g_r4_y
+        acc_3_o_z = a_o3_o_t_3 - g_r1_x
+        # (rrrrrr-N83) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        mu_3_o_x = (
+        B_3_o_yx*J_3_xz + B_3_o_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) + acc_3_o_z*h_3_y -
+            B_3_o_yz*Sigma_3_zz - B_3_o_zx*J_3_xy - acc_3_o_y*h_3_z
+        )
+        mu_3_o_y = (
+        B_3_o_xz*Sigma_3_zz + B_3_o_zy*J_3_xy + acc_3_o_x*h_3_z - B_3_o_xy*J_3_yz -
+            B_3_o_zx*Sigma_3_xx - J_3_xz*(W_3_t - W_3_t_3) - acc_3_o_z*h_3_x
+        )
+        mu_3_o_z = (
+        B_3_o_xz*J_3_yz + B_3_o_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + acc_3_o_y*h_3_x -
+            B_3_o_xy*Sigma_3_yy - B_3_o_yz*J_3_xz - acc_3_o_x*h_3_y
+        )
+        # (rrrrrr-N20) remainder without the acceleration in: inertia force of link 4 less its weight
+        f_4_o_r0_x = -c_4_t*f_4_o_x - f_4_o_y*s_4
+        f_4_o_r0_y = f_4_o_x*s_4 - c_4_t*f_4_o_y
+        # (rrrrrr-N85) remainder without the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
+        N_3_o_x = N_4_o_z + mu_3_o_x
+        N_3_o_y = mu_3_o_y - N_4_o_x*c_4_t - N_4_o_y*s_4 - f_4_o_r0_y*rrrrrr_joint4_offset_x
+        N_3_o_z = mu_3_o_z + N_4_o_x*s_4 + f_4_o_r0_x*rrrrrr_joint4_offset_x - N_4_o_y*c_4_t
+        # (rrrrrr-N14) remainder without the acceleration in: inertia force of link 3 less its weight
+        f_3_o_x = B_3_o_xy*h_3_y + B_3_o_xz*h_3_z + acc_3_o_x*rrrrrr_link3_mass - W_3_xx*h_3_x
+        f_3_o_y = (
+        B_3_o_yx*h_3_x + B_3_o_yz*h_3_z + acc_3_o_y*rrrrrr_link3_mass - h_3_y*(W_3_t + W_3_t_3)
+        )
+        f_3_o_z = (
+        B_3_o_zx*h_3_x + B_3_o_zy*h_3_y + acc_3_o_z*rrrrrr_link3_mass - h_3_z*(W_3_t + W_3_t_2)
+        )
+        # (rrrrrr-N87) remainder without the acceleration in: inertia force of the links from 3 outwards, the last link left out
+        T_3_o_x = f_3_o_x + f_4_o_z
+        T_3_o_y = f_3_o_y + f_4_o_r0_x
+        T_3_o_z = f_3_o_z + f_4_o_r0_y
+        # (rrrrrr-N95) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        mu_2_o_x = (
+        B_2_o_yx*J_2_xz + B_2_o_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) + g_r3_y*h_2_z -
+            B_2_o_zx*J_2_xy - Sigma_2_zz*alpha_1_o_t - g_r1_x*h_2_y
+        )
+        mu_2_o_y = (
+        B_2_o_zy*J_2_xy + Sigma_2_zz*alpha_1_o_t_2 + g_r1_x*h_2_x - B_2_o_xy*J_2_yz -
+            B_2_o_zx*Sigma_2_xx - J_2_xz*(W_2_t - W_2_t_3) - g_r3_x*h_2_z
+        )
+        mu_2_o_z = (
+        B_2_o_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + J_2_yz*alpha_1_o_t_2 + g_r3_x*h_2_y -
+            B_2_o_xy*Sigma_2_yy - J_2_xz*alpha_1_o_t - g_r3_y*h_2_x
+        )
+        # (rrrrrr-N97) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        N_2_o_x = mu_2_o_x + N_3_o_x*c_3 - N_3_o_y*s_3
+        N_2_o_y = mu_2_o_y + N_3_o_x*s_3 + N_3_o_y*c_3 - T_3_o_z*rrrrrr_joint3_offset_x
+        N_2_o_z = N_3_o_z + mu_2_o_z + rrrrrr_joint3_offset_x*(T_3_o_x*s_3 + T_3_o_y*c_3)
+        # (rrrrrr-N107) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        mu_1_o_z = -J_1_xx*qdd_1_o_t_5 - g_r1_x*h_1_y - g_r1_y*h_1_z
+        # (rrrrrr-N109) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        N_1_o_z = mu_1_o_z + N_2_o_x*s_2 - N_2_o_y*c_2_t
+        # (rrrrrr-N117) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        G_o_t = inv_w_1_t_69*mu_5_o_z
+        G_o_t_2 = inv_w_1_t_101*(G_o_t*w_1_t_18 - N_4_o_z)
+        G_o_t_3 = inv_w_1_t_150*(G_o_t*w_1_t_21 + G_o_t_2*w_1_t_36 - N_1_o_z)
+        G_o_t_4 = inv_w_1_t_194*(G_o_t*w_1_t_25 + G_o_t_2*w_1_t_42 - N_2_o_z - G_o_t_3*w_1_t_58)
+        G_o_t_5 = (
+        inv_w_1_t_222*(N_3_o_z + G_o_t*w_1_t_28 + G_o_t_3*w_1_t_64 + G_o_t_4*w_1_t_76 -
+            G_o_t_2*w_1_t_47)
+        )
+        G_o_t_6 = size*(G_o_t_2*w_1_t_34 + G_o_t_3*w_1_t_56 + G_o_t_4*w_1_t_74 - G_o_t_5*w_1_t_86)
+        G_o_t_7 = (
+        size*(G_o_t_2*w_1_t_35 + G_o_t_3*w_1_t_57 + G_o_t_4*w_1_t_75 - G_o_t*w_1_t_17 -
+            G_o_t_5*w_1_t_87)
+        )
+        # (rrrrrr-N133) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        c_o_x = (
+        G_o_t_3*w_1_t_53 + G_o_t_4*w_1_t_71 + W_5_xx*h_5_x - B_5_o_xy*h_5_y - B_5_o_xz*h_5_z -
+            G_o_t_5*w_1_t_83
+        )
+        c_o_y = (
+        G_o_t_5*w_1_t_84 + h_5_y*(W_5_t + W_5_t_3) - B_5_o_yx*h_5_x - B_5_o_yz*h_5_z -
+            G_o_t*w_1_t_16 - G_o_t_2*w_1_t_32 - G_o_t_3*w_1_t_54 - G_o_t_4*w_1_t_72
+        )
+        c_o_z = (
+        G_o_t_2*w_1_t_33 + G_o_t_3*w_1_t_55 + G_o_t_4*w_1_t_73 + h_5_z*(W_5_t + W_5_t_2) -
+            B_5_o_zx*h_5_x - B_5_o_zy*h_5_y - G_o_t_5*w_1_t_85
+        )
+        # (rrrrrr-N139) velocity and gravity terms of the leg force
+        U_in_base_x = (
+        -axis_x_rrrrrr_axes5_x*c_o_x - axis_y_rrrrrr_axes5_in_base_x*c_o_y -
+            axis_z_rrrrrr_axes5_in_base_x*c_o_z
+        )
+        U_in_base_y = (
+        -axis_x_rrrrrr_axes5_y*c_o_x - axis_y_rrrrrr_axes5_in_base_y*c_o_y -
+            axis_z_rrrrrr_axes5_in_base_y*c_o_z
+        )
+        U_in_base_z = (
+        -axis_x_rrrrrr_axes5_z*c_o_x - axis_y_rrrrrr_axes5_in_base_z*c_o_y -
+            axis_z_rrrrrr_axes5_in_base_z*c_o_z
+        )
+        # (rrrrrr-N129) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        G_m_o_t = G_o_t_6*end_p1_r8_y
+        G_m_o_t_2 = G_o_t_7*end_p1_r8_y
+        G_m_o_y = G_o_t_7*end_p1_r6_x - G_o_t_6*end_p1_r8_x
+        # (M7) rotational part of Z
+        Z_a_t = (
+        G_m_o_t*axis_x_rrrrrr_axes5_x + G_m_o_y*axis_y_rrrrrr_axes5_in_base_x +
+            U_in_base_z*q_in_base_y - G_m_o_t_2*axis_z_rrrrrr_axes5_in_base_x -
+            U_in_base_y*q_in_base_z
+        )
+        Z_a_t_2 = (
+        G_m_o_t*axis_x_rrrrrr_axes5_y + G_m_o_y*axis_y_rrrrrr_axes5_in_base_y +
+            U_in_base_x*q_in_base_z - G_m_o_t_2*axis_z_rrrrrr_axes5_in_base_y -
+            U_in_base_z*q_in_base_x
+        )
+        Z_a_t_3 = (
+        G_m_o_t*axis_x_rrrrrr_axes5_z + G_m_o_y*axis_y_rrrrrr_axes5_in_base_z +
+            U_in_base_y*q_in_base_x - G_m_o_t_2*axis_z_rrrrrr_axes5_in_base_z -
+            U_in_base_x*q_in_base_y
+        )
+        # (rrrrrr-V16) force part of reciprocal wrench 2
+        w_2_in_base_x = (
+        axis_x_rrrrrr_axes5_x*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_x*w_2_t_3 -
+            axis_z_rrrrrr_axes5_in_base_x*w_2_t_4
+        )
+        w_2_in_base_y = (
+        axis_x_rrrrrr_axes5_y*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_y*w_2_t_3 -
+            axis_z_rrrrrr_axes5_in_base_y*w_2_t_4
+        )
+        w_2_in_base_z = (
+        axis_x_rrrrrr_axes5_z*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_z*w_2_t_3 -
+            axis_z_rrrrrr_axes5_in_base_z*w_2_t_4
+        )
+        # (rrrrrr-V29) moment part of reciprocal wrench 2
+        o_2_x = n_m1_in_base_x*w_2_t_5 + n_m2_in_base_x*w_2_t_6
+        o_2_y_2 = n_m1_in_base_y*w_2_t_5 + n_m2_in_base_y*w_2_t_6
+        o_2_z = n_m1_in_base_z*w_2_t_5 + n_m2_in_base_z*w_2_t_6
+        # (M8) moment of the column's unit force about the platform origin
+        H_a_2_x = o_2_x + q_in_base_y*w_2_in_base_z - q_in_base_z*w_2_in_base_y
+        H_a_2_y = o_2_y_2 + q_in_base_z*w_2_in_base_x - q_in_base_x*w_2_in_base_z
+        H_a_2_z = o_2_z + q_in_base_x*w_2_in_base_y - q_in_base_y*w_2_in_base_x
+        ok = (
+        ok & m.every((abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE * size) &
+            (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
+            (abs(w_1_t_82) > _TOLERANCE * size))
+        )
+        sums = m.added(sums, leg, (
+        Q_t_12, Q_t_13, Q_t_14, Q_t_16, Q_t_17, Q_t_19, M_ta_t_12, M_ta_t_13, M_ta_t_14,
+            M_ta_t_15, M_ta_t_16, M_ta_t_17, M_ta_t_18, M_ta_t_19, M_ta_t_20, M_aa_t,
+            M_aa_t_2, M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6, U_in_base_x, U_in_base_y,
+            U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,
+        ))
+        out_H[[0, 1, 2, 3, 4, 5][leg]] = w_2_in_base_x
+        out_H[[6, 7, 8, 9, 10, 11][leg]] = w_2_in_base_y
+        out_H[[12, 13, 14, 15, 16, 17][leg]] = w_2_in_base_z
+        out_H[[18, 19, 20, 21, 22, 23][leg]] = H_a_2_x
+        out_H[[24, 25, 26, 27, 28, 29][leg]] = H_a_2_y
+        out_H[[30, 31, 32, 33, 34, 35][leg]] = H_a_2_z
     (
     total_rrrrrr_xx, total_rrrrrr_xy, total_rrrrrr_xz, total_rrrrrr_yy, total_rrrrrr_yz,
         total_rrrrrr_zz, total_rrrrrr_xx_2, total_rrrrrr_xy_2, total_rrrrrr_xz_2, total_rrrrrr_yx,
@@ -2765,7 +3255,7 @@ def _dynamics_after(c, s, t, f):
         total_rrrrrr_xx_3, total_rrrrrr_xy_3, total_rrrrrr_xz_3, total_rrrrrr_yy_3,
         total_rrrrrr_yz_3, total_rrrrrr_zz_3, total_rrrrrr_x, total_rrrrrr_y, total_rrrrrr_z,
         total_rrrrrr_x_2, total_rrrrrr_y_2, total_rrrrrr_z_2,
-    ) = t
+    ) = sums
     # (M1) translational block of M
     M_tt_xx = m_star - total_rrrrrr_xx
     M_tt_yy = m_star - total_rrrrrr_yy
@@ -2792,27 +3282,70 @@ def _dynamics_after(c, s, t, f):
     Z_a_x = Z_q_in_base_x + total_rrrrrr_x_2
     Z_a_y = Z_q_in_base_y + total_rrrrrr_y_2
     Z_a_z = Z_q_in_base_z + total_rrrrrr_z_2
-    ok = True
-    return (
-    ok, (M_tt_xx, -total_rrrrrr_xy, -total_rrrrrr_xy, -total_rrrrrr_xz, -total_rrrrrr_xz, M_tt_yy,
-        -total_rrrrrr_yz, -total_rrrrrr_yz, M_tt_zz, total_rrrrrr_xx_2, total_rrrrrr_xx_2,
-        M_ta_xy, M_ta_xy, M_ta_xz, M_ta_xz, M_ta_yx, M_ta_yx, -total_rrrrrr_yy_2,
-        -total_rrrrrr_yy_2, M_ta_yz, M_ta_yz, M_ta_zx, M_ta_zx, M_ta_zy, M_ta_zy,
-        total_rrrrrr_zz_2, total_rrrrrr_zz_2, M_aa_xx, M_aa_xy, M_aa_xy, M_aa_xz, M_aa_xz,
-        M_aa_yy, M_aa_yz, M_aa_yz, M_aa_zz, Z_t_x, Z_t_y, Z_t_z, Z_a_x, Z_a_y, Z_a_z,),
-    )
+    out_M[0] = M_tt_xx
+    out_M[1] = -total_rrrrrr_xy
+    out_M[6] = -total_rrrrrr_xy
+    out_M[2] = -total_rrrrrr_xz
+    out_M[12] = -total_rrrrrr_xz
+    out_M[7] = M_tt_yy
+    out_M[8] = -total_rrrrrr_yz
+    out_M[13] = -total_rrrrrr_yz
+    out_M[14] = M_tt_zz
+    out_M[3] = total_rrrrrr_xx_2
+    out_M[18] = total_rrrrrr_xx_2
+    out_M[4] = M_ta_xy
+    out_M[24] = M_ta_xy
+    out_M[5] = M_ta_xz
+    out_M[30] = M_ta_xz
+    out_M[9] = M_ta_yx
+    out_M[19] = M_ta_yx
+    out_M[10] = -total_rrrrrr_yy_2
+    out_M[25] = -total_rrrrrr_yy_2
+    out_M[11] = M_ta_yz
+    out_M[31] = M_ta_yz
+    out_M[15] = M_ta_zx
+    out_M[20] = M_ta_zx
+    out_M[16] = M_ta_zy
+    out_M[26] = M_ta_zy
+    out_M[17] = total_rrrrrr_zz_2
+    out_M[32] = total_rrrrrr_zz_2
+    out_M[21] = M_aa_xx
+    out_M[22] = M_aa_xy
+    out_M[27] = M_aa_xy
+    out_M[23] = M_aa_xz
+    out_M[33] = M_aa_xz
+    out_M[28] = M_aa_yy
+    out_M[29] = M_aa_yz
+    out_M[34] = M_aa_yz
+    out_M[35] = M_aa_zz
+    out_Z[0] = Z_t_x
+    out_Z[1] = Z_t_y
+    out_Z[2] = Z_t_z
+    out_Z[3] = Z_a_x
+    out_Z[4] = Z_a_y
+    out_Z[5] = Z_a_z
+    return ok, (out_M, out_Z, out_H,)
 
 
 # M: 7275 mul, 5289 add, 30 div, 30 sqrt, 60 trig
-def _M_before(c, X, q, f):
+def _run_M(m, X, q):
+    sqrt = m.sqrt
+    sin = m.sin
+    cos = m.cos
+    shared, legs = m.constants("M")
     (
     J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
-        h_star_z,
-    ) = c
+        h_star_z, m_star,
+    ) = shared
     X_3 = X[3]
     X_4 = X[4]
     X_5 = X[5]
     X_6 = X[6]
+    q_1 = q[1]
+    q_2 = q[2]
+    q_3 = q[3]
+    q_4 = q[4]
+    q_5 = q[5]
     # X: named entries
     quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6
     quaternion_scale = 2.0/quaternion_norm2
@@ -2837,6 +3370,9 @@ def _M_before(c, X, q, f):
     R_zx = quaternion_xz - quaternion_wy
     R_zy = quaternion_wx + quaternion_yz
     R_zz = 1.0 - quaternion_xx - quaternion_yy
+    ok = True
+    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    out_M = m.zeros(36)
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -2857,1003 +3393,1032 @@ def _M_before(c, X, q, f):
     J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
     J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz
     J_star_t_15 = 2.0*J_star_t_14 + J_star_xx
-    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    return (
-    ok, (R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, h_star_in_base_x, h_star_in_base_y,
-        h_star_in_base_z, J_star_t_8, J_star_t_9, J_star_t_10, J_star_t_12, J_star_t_13,
-        J_star_t_15,), (),
-    )
-
-
-def _M_rrrrrr(c, k, x, s, f):
-    sqrt = f.sqrt
-    sin = f.sin
-    cos = f.cos
-    (
-    J_1_xx, J_2_xx, J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_2_zz, J_3_xx, J_3_xy, J_3_xz, J_3_yy,
-        J_3_yz, J_3_zz, J_4_xx, J_4_xy, J_4_xz, J_4_yy, J_4_yz, J_5_xx, J_5_xy, J_5_xz, J_5_yy,
-        J_5_yz, J_5_zz, Jc_2_t, Jc_3_t_2, Jc_3_t_3, Jc_4_xx, h_3_y, h_3_z, h_4_y, h_4_z, h_5_x,
-        h_5_y, h_5_z, hc_3_x, rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz,
-        rrrrrr_base_frame_yx, rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx,
-        rrrrrr_base_frame_zy, rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x,
-        rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x,
-        rrrrrr_platform_joint_axis_platform_x, rrrrrr_platform_joint_axis_platform_y,
-        rrrrrr_platform_joint_axis_platform_z, rrrrrr_platform_joint_offset_x,
-        rrrrrr_platform_point_x, rrrrrr_platform_point_y, rrrrrr_platform_point_z, size, size_t,
-    ) = k
-    q_1, q_2, q_3, q_4, q_5 = x
-    R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
-    # (rrrrrr-K10) cosine of the angle of joint 5 from its reference direction
-    c_5_t = sin(q_5)
-    # (rrrrrr-K11) sine of the angle of joint 5 from its reference direction
-    s_5 = cos(q_5)
-    # (rrrrrr-V2) from joint 4 to the connection point, along the links
-    r_4_t = c_5_t*rrrrrr_platform_joint_offset_x
-    r_4_z = rrrrrr_joint5_offset_x + rrrrrr_platform_joint_offset_x*s_5
-    # (rrrrrr-K8) cosine of the angle of joint 4 from its reference direction
-    c_4_t = sin(q_4)
-    # (rrrrrr-K9) sine of the angle of joint 4 from its reference direction
-    s_4 = cos(q_4)
-    # (rrrrrr-V2) from joint 4 to the connection point, along the links
-    r_4_t_2 = r_4_t*s_4
-    r_4_t_3 = c_4_t*r_4_t
-    # (rrrrrr-V3) from joint 3 to the connection point, along the links
-    r_3_x = r_4_z + rrrrrr_joint4_offset_x
-    # (rrrrrr-K6) cosine of the angle of joint 3 from its reference direction
-    c_3 = cos(q_3)
-    # (rrrrrr-K7) sine of the angle of joint 3 from its reference direction
-    s_3 = sin(q_3)
-    # (rrrrrr-V3) from joint 3 to the connection point, along the links
-    r_3_r0_y = c_3*r_4_t_2 + r_3_x*s_3
-    # (rrrrrr-V4) from joint 2 to the connection point, along the links
-    r_2_x = rrrrrr_joint3_offset_x + c_3*r_3_x - r_4_t_2*s_3
-    # (rrrrrr-K4) cosine of the angle of joint 2 from its reference direction
-    c_2_t = sin(q_2)
-    # (rrrrrr-K5) sine of the angle of joint 2 from its reference direction
-    s_2 = cos(q_2)
-    # (rrrrrr-V4) from joint 2 to the connection point, along the links
-    r_2_r0_x = -c_2_t*r_2_x - r_3_r0_y*s_2
-    # (rrrrrr-V5) from joint 1 to the connection point, along the links
-    r_1_z = rrrrrr_joint2_offset_x + r_2_x*s_2 - c_2_t*r_3_r0_y
-    # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-    e_1_r2_x = c_3*s_2 - c_2_t*s_3
-    e_1_r2_y = -c_2_t*c_3 - s_2*s_3
-    v_1_t = c_4_t*e_1_r2_y
-    v_1_t_2 = e_1_r2_y*s_4
-    e_1_r6_x = c_5_t*v_1_t_2 + e_1_r2_x*s_5
-    e_1_r6_y = s_5*v_1_t_2 - c_5_t*e_1_r2_x
-    # (rrrrrr-V5) from joint 1 to the connection point, along the links
-    r_1_r1_x = r_1_z*s_2 - c_2_t*r_2_r0_x
-    r_1_r1_y = -c_2_t*r_1_z - r_2_r0_x*s_2
-    r_1_r2_x = c_3*r_1_r1_x + r_1_r1_y*s_3
-    r_1_r2_y = c_3*r_1_r1_y - r_1_r1_x*s_3
-    r_1_t = r_4_t_3*s_4
-    r_1_r4_x = r_1_t - c_4_t*r_1_r2_y
-    r_1_t_2 = c_4_t*r_4_t_3
-    r_1_r4_y = -r_1_t_2 - r_1_r2_y*s_4
-    r_1_r6_x = r_1_r2_x*s_5 - c_5_t*r_1_r4_y
-    r_1_r6_y = -c_5_t*r_1_r2_x - r_1_r4_y*s_5
-    # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-    v_1_x = e_1_r6_y*r_1_r4_x + r_1_r6_y*v_1_t
-    v_1_y = -e_1_r6_x*r_1_r4_x - r_1_r6_x*v_1_t
-    v_1_z = e_1_r6_x*r_1_r6_y - e_1_r6_y*r_1_r6_x
-    # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-    v_2_t = c_4_t*c_5_t
-    v_2_t_2 = c_4_t*s_5
-    # (rrrrrr-V4) from joint 2 to the connection point, along the links
-    r_2_r0_x_2 = c_3*r_2_x + r_3_r0_y*s_3
-    r_2_r0_y = c_3*r_3_r0_y - r_2_x*s_3
-    r_2_r2_x = r_1_t - c_4_t*r_2_r0_y
-    r_2_r2_y = -r_1_t_2 - r_2_r0_y*s_4
-    r_2_r4_x = r_2_r0_x_2*s_5 - c_5_t*r_2_r2_y
-    r_2_r4_y = -c_5_t*r_2_r0_x_2 - r_2_r2_y*s_5
-    # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-    v_2_x = r_2_r2_x*v_2_t_2 - r_2_r4_y*s_4
-    v_2_y = r_2_r4_x*s_4 - r_2_r2_x*v_2_t
-    v_2_z = r_2_r4_y*v_2_t - r_2_r4_x*v_2_t_2
-    # (rrrrrr-V3) from joint 3 to the connection point, along the links
-    r_3_r1_x = r_1_t - c_4_t*r_4_t_2
-    r_3_r1_y = -r_1_t_2 - r_4_t_2*s_4
-    r_3_r3_x = r_3_x*s_5 - c_5_t*r_3_r1_y
-    r_3_r3_y = -c_5_t*r_3_x - r_3_r1_y*s_5
-    # (rrrrrr-V8) velocity of the connection point per rate of joint 3
-    v_3_x = r_3_r1_x*v_2_t_2 - r_3_r3_y*s_4
-    v_3_y = r_3_r3_x*s_4 - r_3_r1_x*v_2_t
-    v_3_z = r_3_r3_y*v_2_t - r_3_r3_x*v_2_t_2
-    # (rrrrrr-V9) velocity of the connection point per rate of joint 4
-    v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t = c_4_t*s_3
-    w_1_t_2 = c_3*c_4_t
-    axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_2 - c_2_t*w_1_t
-    axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_2 + s_2*w_1_t
-    # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
-    c_1_t = sin(q_1)
-    # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
-    s_1 = cos(q_1)
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    axis_z_rrrrrr_axes5_r7_x = -axis_z_rrrrrr_axes5_r5_x*s_1 - c_1_t*s_4
-    axis_z_rrrrrr_axes5_r7_y = s_1*s_4 - axis_z_rrrrrr_axes5_r5_x*c_1_t
-    axis_z_rrrrrr_axes5_in_base_x = (
-    axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx + axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy
-        + axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
-    )
-    axis_z_rrrrrr_axes5_in_base_y = (
-    axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx + axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy
-        + axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
-    )
-    axis_z_rrrrrr_axes5_in_base_z = (
-    axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx + axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy
-        + axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
-    )
-    w_1_t_3 = s_4*s_5
-    axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_3
-    axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_3 - c_5_t*s_3
-    axis_y_rrrrrr_axes5_r5_x = -axis_y_rrrrrr_axes5_r4_x*c_2_t - axis_y_rrrrrr_axes5_r4_y*s_2
-    axis_y_rrrrrr_axes5_r5_y = axis_y_rrrrrr_axes5_r4_x*s_2 - axis_y_rrrrrr_axes5_r4_y*c_2_t
-    axis_y_rrrrrr_axes5_r7_x = -axis_y_rrrrrr_axes5_r5_x*s_1 - c_1_t*v_2_t_2
-    axis_y_rrrrrr_axes5_r7_y = s_1*v_2_t_2 - axis_y_rrrrrr_axes5_r5_x*c_1_t
-    axis_y_rrrrrr_axes5_in_base_x = (
-    axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx + axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy
-        + axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
-    )
-    axis_y_rrrrrr_axes5_in_base_y = (
-    axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx + axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy
-        + axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
-    )
-    axis_y_rrrrrr_axes5_in_base_z = (
-    axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx + axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy
-        + axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
-    )
-    axis_x_rrrrrr_axes5_x = (
-    axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_z -
-        axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_y
-    )
-    axis_x_rrrrrr_axes5_y = (
-    axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_x -
-        axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_z
-    )
-    axis_x_rrrrrr_axes5_z = (
-    axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_y -
-        axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_x
-    )
-    # (rrrrrr-G13) inertia tensor of link 5 about the connection point
-    J_5_t = J_5_xy*s_5
-    _x = -J_5_t - J_5_xx*c_5_t
-    J_5_t_2 = J_5_xy*c_5_t
-    _x_2 = -J_5_t_2 - J_5_yy*s_5
-    _x_3 = -J_5_xz*c_5_t - J_5_yz*s_5
-    _y = J_5_xz*s_5 - J_5_yz*c_5_t
-    # (rrrrrr-N33) inertia tensor of the links from 4 outwards about joint 4
-    Jc_4_xy = _x_3 - J_4_yz
-    Jc_4_xz = J_4_xz + _y
-    Jc_4_yy = J_4_yy - _x*c_5_t - _x_2*s_5
-    Jc_4_yz = _x*s_5 - J_4_xy - _x_2*c_5_t
-    Jc_4_zz = J_4_xx + s_5*(J_5_xx*s_5 - J_5_t_2) - c_5_t*(J_5_t - J_5_yy*c_5_t)
-    Jc_4_t = Jc_4_xy*s_4
-    _x_4 = -Jc_4_t - Jc_4_xx*c_4_t
-    Jc_4_t_2 = Jc_4_xy*c_4_t
-    _x_5 = -Jc_4_t_2 - Jc_4_yy*s_4
-    _x_6 = -Jc_4_xz*c_4_t - Jc_4_yz*s_4
-    _y_2 = Jc_4_xz*s_4 - Jc_4_yz*c_4_t
-    # (rrrrrr-G9) first moment of link 4 about the origin of link 4
-    h_4_r1_x = h_4_y*s_4 - c_4_t*h_4_z
-    h_4_r1_y = c_4_t*h_4_y + h_4_z*s_4
-    # (rrrrrr-N44) inertia tensor of the links from 3 outwards about joint 3
-    Jc_3_t = h_4_r1_x*rrrrrr_joint4_offset_x
-    Jc_3_t_4 = h_4_r1_y*rrrrrr_joint4_offset_x
-    Jc_3_xx = J_3_xx + Jc_3_t_3 + Jc_4_zz - 2.0*Jc_3_t_2
-    Jc_3_xy = J_3_xy + _x_6 - Jc_3_t
-    Jc_3_xz = J_3_xz + _y_2 - Jc_3_t_4
-    Jc_3_yy = J_3_yy + Jc_3_t_3 - _x_4*c_4_t - _x_5*s_4
-    Jc_3_yz = J_3_yz + _x_4*s_4 - _x_5*c_4_t
-    Jc_3_zz = J_3_zz + Jc_3_t_3 + s_4*(Jc_4_xx*s_4 - Jc_4_t_2) - c_4_t*(Jc_4_t - Jc_4_yy*c_4_t)
-    # (rrrrrr-N43) first moment of the links from 3 outwards
-    hc_3_y = h_3_y + h_4_r1_x
-    hc_3_z = h_3_z + h_4_r1_y
-    # (rrrrrr-N44) inertia tensor of the links from 3 outwards about joint 3
-    Jc_3_t_5 = Jc_3_xy*s_3
-    _x_7 = Jc_3_xx*c_3 - Jc_3_t_5
-    Jc_3_t_6 = Jc_3_xy*c_3
-    _x_8 = Jc_3_t_6 - Jc_3_yy*s_3
-    _x_9 = Jc_3_xz*c_3 - Jc_3_yz*s_3
-    _y_3 = Jc_3_xz*s_3 + Jc_3_yz*c_3
-    # (rrrrrr-N43) first moment of the links from 3 outwards
-    hc_3_r0_x = c_3*hc_3_x - hc_3_y*s_3
-    hc_3_r0_y = c_3*hc_3_y + hc_3_x*s_3
-    # (rrrrrr-N53) inertia tensor of the links from 2 outwards about joint 2
-    Jc_2_t_2 = rrrrrr_joint3_offset_x*(Jc_2_t + hc_3_r0_x)
-    Jc_2_t_3 = 2.0*Jc_2_t_2
-    Jc_2_xy = J_2_xy + _x_7*s_3 + _x_8*c_3 - hc_3_r0_y*rrrrrr_joint3_offset_x
-    Jc_2_zz = J_2_zz + Jc_2_t_3 + Jc_3_zz
-    _y_4 = s_2*(J_2_xz + _x_9 - hc_3_z*rrrrrr_joint3_offset_x) - c_2_t*(J_2_yz + _y_3)
-    _y_5 = (
-    s_2*(s_2*(J_2_xx + Jc_2_t_3 + _x_7*c_3 - 2.0*Jc_2_t_2 - _x_8*s_3) - Jc_2_xy*c_2_t) -
-        c_2_t*(Jc_2_xy*s_2 - c_2_t*(J_2_yy + Jc_2_t_3 + c_3*(Jc_3_t_5 + Jc_3_yy*c_3) +
-        s_3*(Jc_3_t_6 + Jc_3_xx*s_3)))
-    )
-    # (rrrrrr-N59) inertia tensor of the links from 1 outwards about joint 1
-    Jc_1_zz = J_1_xx + _y_5
-    # (rrrrrr-N48) moment about joint 2 that accelerates joint 3, per unit
-    L_c3_2_z = Jc_3_zz + hc_3_r0_x*rrrrrr_joint3_offset_x
-    L_c3_2_r0_y = _x_9*s_2 - _y_3*c_2_t
-    # (rrrrrr-N37) moment about joint 3 that accelerates joint 4, per unit
-    L_c4_3_y = _x_6 - Jc_3_t
-    L_c4_3_z = _y_2 - Jc_3_t_4
-    # (rrrrrr-N39) moment about joint 2 that accelerates joint 4, per unit
-    L_c4_2_y = Jc_4_zz*s_3 + L_c4_3_y*c_3 - h_4_r1_x*rrrrrr_joint3_offset_x
-    L_c4_2_z = L_c4_3_z - c_3*h_4_r1_y*rrrrrr_joint3_offset_x
-    L_c4_2_r0_y = s_2*(Jc_4_zz*c_3 - L_c4_3_y*s_3) - L_c4_2_y*c_2_t
-    # (rrrrrr-N27) moment about joint 5 that accelerates joint 5, per unit
-    L_c5_r2_x = -J_5_zz*c_4_t - _x_3*s_4
-    L_c5_r2_y = J_5_zz*s_4 - _x_3*c_4_t
-    L_c5_r5_y = s_2*(_y*c_3 - L_c5_r2_x*s_3) - c_2_t*(L_c5_r2_x*c_3 + _y*s_3)
-    # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
-    end_p1_r0_x = (
-    rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xy + R_yx*rrrrrr_base_frame_yy +
-        R_zx*rrrrrr_base_frame_zy) +
-        rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xy +
-        R_yy*rrrrrr_base_frame_yy + R_zy*rrrrrr_base_frame_zy) +
-        rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xy +
-        R_yz*rrrrrr_base_frame_yy + R_zz*rrrrrr_base_frame_zy)
-    )
-    end_p1_r0_y = (
-    rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xz + R_yx*rrrrrr_base_frame_yz +
-        R_zx*rrrrrr_base_frame_zz) +
-        rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xz +
-        R_yy*rrrrrr_base_frame_yz + R_zy*rrrrrr_base_frame_zz) +
-        rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xz +
-        R_yz*rrrrrr_base_frame_yz + R_zz*rrrrrr_base_frame_zz)
-    )
-    end_p1_r0_z = (
-    rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xx + R_yx*rrrrrr_base_frame_yx +
-        R_zx*rrrrrr_base_frame_zx) +
-        rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xx +
-        R_yy*rrrrrr_base_frame_yx + R_zy*rrrrrr_base_frame_zx) +
-        rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xx +
-        R_yz*rrrrrr_base_frame_yx + R_zz*rrrrrr_base_frame_zx)
-    )
-    end_p1_r1_x = end_p1_r0_y*s_1 - c_1_t*end_p1_r0_x
-    end_p1_r1_y = -c_1_t*end_p1_r0_y - end_p1_r0_x*s_1
-    end_p1_r3_x = end_p1_r0_z*s_2 - c_2_t*end_p1_r1_y
-    end_p1_r3_y = -c_2_t*end_p1_r0_z - end_p1_r1_y*s_2
-    end_p1_r4_x = c_3*end_p1_r3_x + end_p1_r3_y*s_3
-    end_p1_r4_y = c_3*end_p1_r3_y - end_p1_r3_x*s_3
-    end_p1_r6_x = end_p1_r1_x*s_4 - c_4_t*end_p1_r4_y
-    end_p1_r6_y = -c_4_t*end_p1_r1_x - end_p1_r4_y*s_4
-    end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
-    end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_4 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
-    w_1_t_5 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
-    w_1_t_6 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
-    w_1_t_7 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
-    w_1_t_8 = size*w_1_t_4
-    w_1_t_9 = size*w_1_t_6
-    w_1_t_10 = size*w_1_t_5
-    w_1_t_11 = size*w_1_t_7
-    w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
-    w_1_t_13 = c_5_t*end_p1_r6_x*size
-    w_1_t_14 = end_p1_r8_y*size
-    w_1_t_15 = sqrt(size_t + w_1_t_14*w_1_t_14)
-    inv_w_1_t_69 = 1.0/w_1_t_15
-    w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
-    w_1_t_17 = inv_w_1_t_69*w_1_t_14
-    w_1_t_18 = w_1_t_13*w_1_t_17
-    w_1_t_19 = w_1_t_16*w_1_t_18
-    w_1_t_20 = w_1_t_13 - w_1_t_17*w_1_t_18
-    w_1_t_21 = v_1_y*w_1_t_16 - w_1_t_17*w_1_t_9
-    w_1_t_22 = v_1_y - w_1_t_16*w_1_t_21
-    w_1_t_23 = w_1_t_9 + w_1_t_17*w_1_t_21
-    w_1_t_24 = w_1_t_11*w_1_t_17
-    w_1_t_25 = v_2_y*w_1_t_16 - w_1_t_24
-    w_1_t_26 = v_2_y - w_1_t_16*w_1_t_25
-    w_1_t_27 = w_1_t_11 + w_1_t_17*w_1_t_25
-    w_1_t_28 = w_1_t_24 - v_3_y*w_1_t_16
-    w_1_t_29 = v_3_y + w_1_t_16*w_1_t_28
-    w_1_t_30 = w_1_t_11 - w_1_t_17*w_1_t_28
-    w_1_t_31 = sqrt(v_4_z*v_4_z + w_1_t_12*w_1_t_12 + w_1_t_19*w_1_t_19 + w_1_t_20*w_1_t_20)
-    inv_w_1_t_101 = 1.0/w_1_t_31
-    w_1_t_32 = inv_w_1_t_101*w_1_t_19
-    w_1_t_33 = inv_w_1_t_101*v_4_z
-    w_1_t_34 = inv_w_1_t_101*w_1_t_12
-    w_1_t_35 = inv_w_1_t_101*w_1_t_20
-    w_1_t_36 = w_1_t_22*w_1_t_32 + w_1_t_23*w_1_t_35 + w_1_t_34*w_1_t_8 - v_1_z*w_1_t_33
-    w_1_t_37 = w_1_t_32*w_1_t_36 - w_1_t_22
-    w_1_t_38 = v_1_z + w_1_t_33*w_1_t_36
-    w_1_t_39 = w_1_t_34*w_1_t_36 - w_1_t_8
-    w_1_t_40 = w_1_t_35*w_1_t_36 - w_1_t_23
-    w_1_t_41 = w_1_t_10*w_1_t_34
-    w_1_t_42 = w_1_t_41 + w_1_t_26*w_1_t_32 + w_1_t_27*w_1_t_35 - v_2_z*w_1_t_33
-    w_1_t_43 = w_1_t_32*w_1_t_42 - w_1_t_26
-    w_1_t_44 = v_2_z + w_1_t_33*w_1_t_42
-    w_1_t_45 = w_1_t_34*w_1_t_42 - w_1_t_10
-    w_1_t_46 = w_1_t_35*w_1_t_42 - w_1_t_27
-    w_1_t_47 = w_1_t_41 + w_1_t_29*w_1_t_32 + w_1_t_30*w_1_t_35 - v_3_z*w_1_t_33
-    w_1_t_48 = w_1_t_32*w_1_t_47 - w_1_t_29
-    w_1_t_49 = v_3_z + w_1_t_33*w_1_t_47
-    w_1_t_50 = w_1_t_34*w_1_t_47 - w_1_t_10
-    w_1_t_51 = w_1_t_35*w_1_t_47 - w_1_t_30
-    w_1_t_52 = (
-    sqrt(v_1_x*v_1_x + w_1_t_37*w_1_t_37 + w_1_t_38*w_1_t_38 + w_1_t_39*w_1_t_39 +
-        w_1_t_40*w_1_t_40)
-    )
-    inv_w_1_t_150 = 1.0/w_1_t_52
-    w_1_t_53 = inv_w_1_t_150*v_1_x
-    w_1_t_54 = inv_w_1_t_150*w_1_t_37
-    w_1_t_55 = inv_w_1_t_150*w_1_t_38
-    w_1_t_56 = inv_w_1_t_150*w_1_t_39
-    w_1_t_57 = inv_w_1_t_150*w_1_t_40
-    w_1_t_58 = (
-    v_2_x*w_1_t_53 + w_1_t_43*w_1_t_54 + w_1_t_44*w_1_t_55 + w_1_t_45*w_1_t_56 + w_1_t_46*w_1_t_57
-    )
-    w_1_t_59 = v_2_x - w_1_t_53*w_1_t_58
-    w_1_t_60 = w_1_t_43 - w_1_t_54*w_1_t_58
-    w_1_t_61 = w_1_t_44 - w_1_t_55*w_1_t_58
-    w_1_t_62 = w_1_t_45 - w_1_t_56*w_1_t_58
-    w_1_t_63 = w_1_t_46 - w_1_t_57*w_1_t_58
-    w_1_t_64 = (
-    v_3_x*w_1_t_53 + w_1_t_48*w_1_t_54 + w_1_t_49*w_1_t_55 + w_1_t_50*w_1_t_56 + w_1_t_51*w_1_t_57
-    )
-    w_1_t_65 = v_3_x - w_1_t_53*w_1_t_64
-    w_1_t_66 = w_1_t_48 - w_1_t_54*w_1_t_64
-    w_1_t_67 = w_1_t_49 - w_1_t_55*w_1_t_64
-    w_1_t_68 = w_1_t_50 - w_1_t_56*w_1_t_64
-    w_1_t_69 = w_1_t_51 - w_1_t_57*w_1_t_64
-    w_1_t_70 = (
-    sqrt(w_1_t_59*w_1_t_59 + w_1_t_60*w_1_t_60 + w_1_t_61*w_1_t_61 + w_1_t_62*w_1_t_62 +
-        w_1_t_63*w_1_t_63)
-    )
-    inv_w_1_t_194 = 1.0/w_1_t_70
-    w_1_t_71 = inv_w_1_t_194*w_1_t_59
-    w_1_t_72 = inv_w_1_t_194*w_1_t_60
-    w_1_t_73 = inv_w_1_t_194*w_1_t_61
-    w_1_t_74 = inv_w_1_t_194*w_1_t_62
-    w_1_t_75 = inv_w_1_t_194*w_1_t_63
-    w_1_t_76 = (
-    w_1_t_65*w_1_t_71 + w_1_t_66*w_1_t_72 + w_1_t_67*w_1_t_73 + w_1_t_68*w_1_t_74 +
-        w_1_t_69*w_1_t_75
-    )
-    w_1_t_77 = w_1_t_65 - w_1_t_71*w_1_t_76
-    w_1_t_78 = w_1_t_66 - w_1_t_72*w_1_t_76
-    w_1_t_79 = w_1_t_67 - w_1_t_73*w_1_t_76
-    w_1_t_80 = w_1_t_68 - w_1_t_74*w_1_t_76
-    w_1_t_81 = w_1_t_69 - w_1_t_75*w_1_t_76
-    w_1_t_82 = (
-    sqrt(w_1_t_77*w_1_t_77 + w_1_t_78*w_1_t_78 + w_1_t_79*w_1_t_79 + w_1_t_80*w_1_t_80 +
-        w_1_t_81*w_1_t_81)
-    )
-    inv_w_1_t_222 = 1.0/w_1_t_82
-    w_1_t_83 = inv_w_1_t_222*w_1_t_77
-    w_1_t_84 = inv_w_1_t_222*w_1_t_78
-    w_1_t_85 = inv_w_1_t_222*w_1_t_79
-    w_1_t_86 = inv_w_1_t_222*w_1_t_80
-    w_1_t_87 = inv_w_1_t_222*w_1_t_81
-    w_1_t_88 = inv_w_1_t_150*inv_w_1_t_194*w_1_t_58
-    w_1_t_89 = inv_w_1_t_222*(inv_w_1_t_150*w_1_t_64 - w_1_t_76*w_1_t_88)
-    w_1_t_90 = w_1_t_71*w_1_t_88 + w_1_t_83*w_1_t_89 - inv_w_1_t_150*w_1_t_53
-    w_1_t_91 = w_1_t_72*w_1_t_88 + w_1_t_84*w_1_t_89 - inv_w_1_t_150*w_1_t_54
-    w_1_t_92 = w_1_t_73*w_1_t_88 + w_1_t_85*w_1_t_89 - inv_w_1_t_150*w_1_t_55
-    w_1_t_93 = size*(w_1_t_74*w_1_t_88 + w_1_t_86*w_1_t_89 - inv_w_1_t_150*w_1_t_56)
-    w_1_t_94 = size*(w_1_t_75*w_1_t_88 + w_1_t_87*w_1_t_89 - inv_w_1_t_150*w_1_t_57)
-    # (rrrrrr-V16) force part of reciprocal wrench 2
-    w_2_t = inv_w_1_t_194*inv_w_1_t_222*w_1_t_76
-    w_2_t_2 = inv_w_1_t_194*w_1_t_71 - w_1_t_83*w_2_t
-    w_2_t_3 = inv_w_1_t_194*w_1_t_72 - w_1_t_84*w_2_t
-    w_2_t_4 = w_1_t_85*w_2_t - inv_w_1_t_194*w_1_t_73
-    w_2_t_5 = size*(inv_w_1_t_194*w_1_t_74 - w_1_t_86*w_2_t)
-    w_2_t_6 = size*(inv_w_1_t_194*w_1_t_75 - w_1_t_87*w_2_t)
-    # (rrrrrr-V19) force part of reciprocal wrench 3
-    w_3_t = inv_w_1_t_222*w_1_t_83
-    w_3_t_2 = inv_w_1_t_222*w_1_t_84
-    w_3_t_3 = inv_w_1_t_222*w_1_t_85
-    w_3_t_4 = inv_w_1_t_222*size*w_1_t_86
-    w_3_t_5 = inv_w_1_t_222*size*w_1_t_87
-    # (rrrrrr-V22) force part of reciprocal wrench 4
-    w_4_t = inv_w_1_t_101*inv_w_1_t_150*w_1_t_36
-    w_4_t_2 = inv_w_1_t_194*(inv_w_1_t_101*w_1_t_42 - w_1_t_58*w_4_t)
-    w_4_t_3 = inv_w_1_t_222*(w_1_t_64*w_4_t + w_1_t_76*w_4_t_2 - inv_w_1_t_101*w_1_t_47)
-    w_4_t_4 = w_1_t_53*w_4_t + w_1_t_71*w_4_t_2 - w_1_t_83*w_4_t_3
-    w_4_t_5 = inv_w_1_t_101*w_1_t_32 + w_1_t_54*w_4_t + w_1_t_72*w_4_t_2 - w_1_t_84*w_4_t_3
-    w_4_t_6 = inv_w_1_t_101*w_1_t_33 + w_1_t_55*w_4_t + w_1_t_73*w_4_t_2 - w_1_t_85*w_4_t_3
-    w_4_t_7 = size*(inv_w_1_t_101*w_1_t_34 + w_1_t_56*w_4_t + w_1_t_74*w_4_t_2 - w_1_t_86*w_4_t_3)
-    w_4_t_8 = size*(inv_w_1_t_101*w_1_t_35 + w_1_t_57*w_4_t + w_1_t_75*w_4_t_2 - w_1_t_87*w_4_t_3)
-    # (rrrrrr-V25) force part of reciprocal wrench 5
-    w_5_t = inv_w_1_t_101*inv_w_1_t_69*w_1_t_18
-    w_5_t_2 = inv_w_1_t_150*(inv_w_1_t_69*w_1_t_21 + w_1_t_36*w_5_t)
-    w_5_t_3 = inv_w_1_t_194*(inv_w_1_t_69*w_1_t_25 + w_1_t_42*w_5_t - w_1_t_58*w_5_t_2)
-    w_5_t_4 = (
-    inv_w_1_t_222*(inv_w_1_t_69*w_1_t_28 + w_1_t_64*w_5_t_2 + w_1_t_76*w_5_t_3 - w_1_t_47*w_5_t)
-    )
-    w_5_t_5 = w_1_t_53*w_5_t_2 + w_1_t_71*w_5_t_3 - w_1_t_83*w_5_t_4
-    w_5_t_6 = (
-    inv_w_1_t_69*w_1_t_16 + w_1_t_32*w_5_t + w_1_t_54*w_5_t_2 + w_1_t_72*w_5_t_3 -
-        w_1_t_84*w_5_t_4
-    )
-    w_5_t_7 = w_1_t_33*w_5_t + w_1_t_55*w_5_t_2 + w_1_t_73*w_5_t_3 - w_1_t_85*w_5_t_4
-    w_5_t_8 = size*(w_1_t_34*w_5_t + w_1_t_56*w_5_t_2 + w_1_t_74*w_5_t_3 - w_1_t_86*w_5_t_4)
-    w_5_t_9 = (
-    size*(w_1_t_35*w_5_t + w_1_t_57*w_5_t_2 + w_1_t_75*w_5_t_3 - inv_w_1_t_69*w_1_t_17 -
-        w_1_t_87*w_5_t_4)
-    )
-    # (rrrrrr-N112) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-    d_Gamma_1_t = L_c5_r5_y*inv_w_1_t_69
-    d_Gamma_1_t_2 = inv_w_1_t_101*(L_c4_2_r0_y - d_Gamma_1_t*w_1_t_18)
-    d_Gamma_1_t_3 = inv_w_1_t_150*(Jc_1_zz + d_Gamma_1_t_2*w_1_t_36 - d_Gamma_1_t*w_1_t_21)
-    d_Gamma_1_t_4 = (
-    inv_w_1_t_194*(_y_4 + d_Gamma_1_t_2*w_1_t_42 - d_Gamma_1_t*w_1_t_25 - d_Gamma_1_t_3*w_1_t_58)
-    )
-    d_Gamma_1_t_5 = (
-    inv_w_1_t_222*(L_c3_2_r0_y + d_Gamma_1_t*w_1_t_28 + d_Gamma_1_t_2*w_1_t_47 -
-        d_Gamma_1_t_3*w_1_t_64 - d_Gamma_1_t_4*w_1_t_76)
-    )
-    d_Gamma_1_x = (
-    d_Gamma_1_t_3*w_1_t_53 + d_Gamma_1_t_4*w_1_t_71 + d_Gamma_1_t_5*w_1_t_83 + e_1_r6_y*h_5_z +
-        h_5_y*v_1_t
-    )
-    d_Gamma_1_y = (
-    d_Gamma_1_t*w_1_t_16 - d_Gamma_1_t_2*w_1_t_32 - d_Gamma_1_t_3*w_1_t_54 -
-        d_Gamma_1_t_4*w_1_t_72 - d_Gamma_1_t_5*w_1_t_84 - e_1_r6_x*h_5_z - h_5_x*v_1_t
-    )
-    d_Gamma_1_z = (
-    d_Gamma_1_t_2*w_1_t_33 + d_Gamma_1_t_3*w_1_t_55 + d_Gamma_1_t_4*w_1_t_73 +
-        d_Gamma_1_t_5*w_1_t_85 + e_1_r6_x*h_5_y - e_1_r6_y*h_5_x
-    )
-    # (rrrrrr-N102) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-    d_Gamma_2_t = h_5_z*v_2_t_2 - h_5_y*s_4
-    d_Gamma_2_t_2 = h_5_z*v_2_t - h_5_x*s_4
-    d_Gamma_2_t_3 = h_5_y*v_2_t - h_5_x*v_2_t_2
-    d_Gamma_2_t_4 = L_c5_r2_y*inv_w_1_t_69
-    d_Gamma_2_t_5 = d_Gamma_2_t_4*w_1_t_18
-    d_Gamma_2_t_6 = inv_w_1_t_101*(L_c4_2_z - d_Gamma_2_t_5)
-    d_Gamma_2_t_7 = d_Gamma_2_t_4*w_1_t_21
-    d_Gamma_2_t_8 = inv_w_1_t_150*(_y_4 + d_Gamma_2_t_6*w_1_t_36 - d_Gamma_2_t_7)
-    d_Gamma_2_t_9 = d_Gamma_2_t_4*w_1_t_25
-    d_Gamma_2_t_10 = (
-    inv_w_1_t_194*(Jc_2_zz + d_Gamma_2_t_6*w_1_t_42 - d_Gamma_2_t_9 - d_Gamma_2_t_8*w_1_t_58)
-    )
-    d_Gamma_2_t_11 = d_Gamma_2_t_4*w_1_t_28
-    d_Gamma_2_t_12 = (
-    inv_w_1_t_222*(L_c3_2_z + d_Gamma_2_t_11 + d_Gamma_2_t_6*w_1_t_47 - d_Gamma_2_t_10*w_1_t_76 -
-        d_Gamma_2_t_8*w_1_t_64)
-    )
-    d_Gamma_2_t_13 = d_Gamma_2_t_4*w_1_t_16
-    d_Gamma_2_x = (
-    d_Gamma_2_t + d_Gamma_2_t_10*w_1_t_71 + d_Gamma_2_t_12*w_1_t_83 + d_Gamma_2_t_8*w_1_t_53
-    )
-    d_Gamma_2_y = (
-    d_Gamma_2_t_13 - d_Gamma_2_t_2 - d_Gamma_2_t_10*w_1_t_72 - d_Gamma_2_t_12*w_1_t_84 -
-        d_Gamma_2_t_6*w_1_t_32 - d_Gamma_2_t_8*w_1_t_54
-    )
-    d_Gamma_2_z = (
-    d_Gamma_2_t_3 + d_Gamma_2_t_10*w_1_t_73 + d_Gamma_2_t_12*w_1_t_85 + d_Gamma_2_t_6*w_1_t_33 +
-        d_Gamma_2_t_8*w_1_t_55
-    )
-    # (rrrrrr-N90) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-    d_Gamma_3_t = inv_w_1_t_101*(L_c4_3_z - d_Gamma_2_t_5)
-    d_Gamma_3_t_2 = inv_w_1_t_150*(L_c3_2_r0_y + d_Gamma_3_t*w_1_t_36 - d_Gamma_2_t_7)
-    d_Gamma_3_t_3 = (
-    inv_w_1_t_194*(L_c3_2_z + d_Gamma_3_t*w_1_t_42 - d_Gamma_2_t_9 - d_Gamma_3_t_2*w_1_t_58)
-    )
-    d_Gamma_3_t_4 = (
-    inv_w_1_t_222*(Jc_3_zz + d_Gamma_2_t_11 + d_Gamma_3_t*w_1_t_47 - d_Gamma_3_t_2*w_1_t_64 -
-        d_Gamma_3_t_3*w_1_t_76)
-    )
-    d_Gamma_3_x = (
-    d_Gamma_2_t + d_Gamma_3_t_2*w_1_t_53 + d_Gamma_3_t_3*w_1_t_71 + d_Gamma_3_t_4*w_1_t_83
-    )
-    d_Gamma_3_y = (
-    d_Gamma_2_t_13 - d_Gamma_2_t_2 - d_Gamma_3_t*w_1_t_32 - d_Gamma_3_t_2*w_1_t_54 -
-        d_Gamma_3_t_3*w_1_t_72 - d_Gamma_3_t_4*w_1_t_84
-    )
-    d_Gamma_3_z = (
-    d_Gamma_2_t_3 + d_Gamma_3_t*w_1_t_33 + d_Gamma_3_t_2*w_1_t_55 + d_Gamma_3_t_3*w_1_t_73 +
-        d_Gamma_3_t_4*w_1_t_85
-    )
-    # (rrrrrr-N78) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
-    d_Gamma_4_t = _y*inv_w_1_t_69
-    d_Gamma_4_t_2 = inv_w_1_t_101*(Jc_4_zz - d_Gamma_4_t*w_1_t_18)
-    d_Gamma_4_t_3 = inv_w_1_t_150*(L_c4_2_r0_y + d_Gamma_4_t_2*w_1_t_36 - d_Gamma_4_t*w_1_t_21)
-    d_Gamma_4_t_4 = (
-    inv_w_1_t_194*(L_c4_2_z + d_Gamma_4_t_2*w_1_t_42 - d_Gamma_4_t*w_1_t_25 -
-        d_Gamma_4_t_3*w_1_t_58)
-    )
-    d_Gamma_4_t_5 = (
-    inv_w_1_t_222*(L_c4_3_z + d_Gamma_4_t*w_1_t_28 + d_Gamma_4_t_2*w_1_t_47 -
-        d_Gamma_4_t_3*w_1_t_64 - d_Gamma_4_t_4*w_1_t_76)
-    )
-    d_Gamma_4_x = (
-    d_Gamma_4_t_3*w_1_t_53 + d_Gamma_4_t_4*w_1_t_71 + d_Gamma_4_t_5*w_1_t_83 - c_5_t*h_5_z
-    )
-    d_Gamma_4_y = (
-    d_Gamma_4_t*w_1_t_16 - d_Gamma_4_t_2*w_1_t_32 - d_Gamma_4_t_3*w_1_t_54 -
-        d_Gamma_4_t_4*w_1_t_72 - d_Gamma_4_t_5*w_1_t_84 - h_5_z*s_5
-    )
-    d_Gamma_4_z = (
-    c_5_t*h_5_x + d_Gamma_4_t_2*w_1_t_33 + d_Gamma_4_t_3*w_1_t_55 + d_Gamma_4_t_4*w_1_t_73 +
-        d_Gamma_4_t_5*w_1_t_85 + h_5_y*s_5
-    )
-    # (rrrrrr-N68) coefficient of the acceleration in: moment about axis 5 of the distal links' inertia and weight
-    d_Gamma_5_t = J_5_zz*inv_w_1_t_69
-    d_Gamma_5_t_2 = inv_w_1_t_101*(_y - d_Gamma_5_t*w_1_t_18)
-    d_Gamma_5_t_3 = inv_w_1_t_150*(L_c5_r5_y + d_Gamma_5_t_2*w_1_t_36 - d_Gamma_5_t*w_1_t_21)
-    d_Gamma_5_t_4 = (
-    inv_w_1_t_194*(L_c5_r2_y + d_Gamma_5_t_2*w_1_t_42 - d_Gamma_5_t*w_1_t_25 -
-        d_Gamma_5_t_3*w_1_t_58)
-    )
-    d_Gamma_5_t_5 = (
-    inv_w_1_t_222*(L_c5_r2_y + d_Gamma_5_t*w_1_t_28 + d_Gamma_5_t_2*w_1_t_47 -
-        d_Gamma_5_t_3*w_1_t_64 - d_Gamma_5_t_4*w_1_t_76)
-    )
-    d_Gamma_5_t_6 = (
-    d_Gamma_5_t_2*w_1_t_33 + d_Gamma_5_t_3*w_1_t_55 + d_Gamma_5_t_4*w_1_t_73 +
-        d_Gamma_5_t_5*w_1_t_85
-    )
-    d_Gamma_5_x = d_Gamma_5_t_3*w_1_t_53 + d_Gamma_5_t_4*w_1_t_71 + d_Gamma_5_t_5*w_1_t_83 - h_5_y
-    d_Gamma_5_y = (
-    h_5_x + d_Gamma_5_t*w_1_t_16 - d_Gamma_5_t_2*w_1_t_32 - d_Gamma_5_t_3*w_1_t_54 -
-        d_Gamma_5_t_4*w_1_t_72 - d_Gamma_5_t_5*w_1_t_84
-    )
-    # (rrrrrr-A48) coefficient of the acceleration in: angular acceleration of link 5
-    d_alpha_5_xz = s_5*w_4_t_6 + v_2_t*w_3_t_3 - e_1_r6_x*w_1_t_92 - v_2_t*w_2_t_4
-    d_alpha_5_yz = v_2_t_2*w_3_t_3 - c_5_t*w_4_t_6 - e_1_r6_y*w_1_t_92 - v_2_t_2*w_2_t_4
-    d_alpha_5_zy = w_5_t_6 - s_4*w_2_t_3 - s_4*w_3_t_2 - v_1_t*w_1_t_91
-    d_alpha_5_zz = s_4*w_3_t_3 + v_1_t*w_1_t_92 - w_5_t_7 - s_4*w_2_t_4
-    # (rrrrrr-N25) coefficient of the acceleration in: inertia force of link 5 from its turning about its reference point
-    d_phi_5_t = (
-    h_5_z*(v_2_t_2*w_2_t_2 + v_2_t_2*w_3_t - c_5_t*w_4_t_4 - e_1_r6_y*w_1_t_90) -
-        h_5_y*(s_4*w_2_t_2 + s_4*w_3_t + v_1_t*w_1_t_90 - w_5_t_5)
-    )
-    # (rrrrrr-N132) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_xx = (
-    d_Gamma_1_x*w_1_t_90 + d_Gamma_5_x*w_5_t_5 - d_phi_5_t - d_Gamma_2_x*w_2_t_2 -
-        d_Gamma_3_x*w_3_t - d_Gamma_4_x*w_4_t_4
-    )
-    d_c_xy = (
-    d_Gamma_1_y*w_1_t_90 + d_Gamma_5_y*w_5_t_5 + d_alpha_5_zy*h_5_y - d_Gamma_2_y*w_2_t_2 -
-        d_Gamma_3_y*w_3_t - d_Gamma_4_y*w_4_t_4 - h_5_z*(c_5_t*w_4_t_5 + e_1_r6_y*w_1_t_91 -
-        v_2_t_2*w_2_t_3 - v_2_t_2*w_3_t_2)
-    )
-    d_c_xz = (
-    d_Gamma_1_z*w_1_t_90 + d_Gamma_5_t_6*w_5_t_5 + d_alpha_5_zz*h_5_y - d_Gamma_2_z*w_2_t_2 -
-        d_Gamma_3_z*w_3_t - d_Gamma_4_z*w_4_t_4 - d_alpha_5_yz*h_5_z
-    )
-    d_c_yy = (
-    d_Gamma_2_y*w_2_t_3 + d_Gamma_3_y*w_3_t_2 + d_Gamma_4_y*w_4_t_5 + h_5_z*(e_1_r6_x*w_1_t_91 -
-        s_5*w_4_t_5 - v_2_t*w_2_t_3 - v_2_t*w_3_t_2) - d_Gamma_1_y*w_1_t_91 - d_Gamma_5_y*w_5_t_6
-        - d_alpha_5_zy*h_5_x
-    )
-    d_c_yz = (
-    d_Gamma_2_z*w_2_t_3 + d_Gamma_3_z*w_3_t_2 + d_Gamma_4_z*w_4_t_5 + d_alpha_5_xz*h_5_z -
-        d_Gamma_1_z*w_1_t_91 - d_Gamma_5_t_6*w_5_t_6 - d_alpha_5_zz*h_5_x
-    )
-    # (rrrrrr-N134) inertia of the leg at the connection point, without the mass gathered there
-    Q_t = d_c_xx - d_c_yy
-    Q_t_2 = 0.5*Q_t
-    Q_t_3 = (
-    d_c_xx + d_Gamma_3_z*w_3_t_3 + d_Gamma_4_z*w_4_t_6 + d_alpha_5_xz*h_5_y - d_Gamma_1_z*w_1_t_92
-        - d_Gamma_2_z*w_2_t_4 - d_Gamma_5_t_6*w_5_t_7 - d_alpha_5_yz*h_5_x
-    )
-    Q_t_4 = 0.5*Q_t_3
-    Q_t_5 = (
-    axis_x_rrrrrr_axes5_x*d_c_xy + axis_z_rrrrrr_axes5_in_base_x*d_c_yz -
-        Q_t_2*axis_y_rrrrrr_axes5_in_base_x
-    )
-    Q_t_6 = (
-    axis_x_rrrrrr_axes5_y*d_c_xy + axis_z_rrrrrr_axes5_in_base_y*d_c_yz -
-        Q_t_2*axis_y_rrrrrr_axes5_in_base_y
-    )
-    Q_t_7 = (
-    axis_x_rrrrrr_axes5_z*d_c_xy + axis_z_rrrrrr_axes5_in_base_z*d_c_yz -
-        Q_t_2*axis_y_rrrrrr_axes5_in_base_z
-    )
-    Q_t_8 = Q_t_4*axis_z_rrrrrr_axes5_in_base_x - axis_x_rrrrrr_axes5_x*d_c_xz
-    Q_t_9 = Q_t_4*axis_z_rrrrrr_axes5_in_base_y - axis_x_rrrrrr_axes5_y*d_c_xz
-    Q_t_10 = Q_t_4*axis_z_rrrrrr_axes5_in_base_z - axis_x_rrrrrr_axes5_z*d_c_xz
-    Q_t_11 = Q_t_5*axis_y_rrrrrr_axes5_in_base_x - Q_t_8*axis_z_rrrrrr_axes5_in_base_x
-    Q_t_12 = 2.0*Q_t_11 + d_c_xx
-    Q_t_13 = (
-    Q_t_5*axis_y_rrrrrr_axes5_in_base_y + Q_t_6*axis_y_rrrrrr_axes5_in_base_x -
-        Q_t_8*axis_z_rrrrrr_axes5_in_base_y - Q_t_9*axis_z_rrrrrr_axes5_in_base_x
-    )
-    Q_t_14 = (
-    Q_t_5*axis_y_rrrrrr_axes5_in_base_z + Q_t_7*axis_y_rrrrrr_axes5_in_base_x -
-        Q_t_10*axis_z_rrrrrr_axes5_in_base_x - Q_t_8*axis_z_rrrrrr_axes5_in_base_z
-    )
-    Q_t_15 = Q_t_6*axis_y_rrrrrr_axes5_in_base_y - Q_t_9*axis_z_rrrrrr_axes5_in_base_y
-    Q_t_16 = 2.0*Q_t_15 + d_c_xx
-    Q_t_17 = (
-    Q_t_6*axis_y_rrrrrr_axes5_in_base_z + Q_t_7*axis_y_rrrrrr_axes5_in_base_y -
-        Q_t_10*axis_z_rrrrrr_axes5_in_base_y - Q_t_9*axis_z_rrrrrr_axes5_in_base_z
-    )
-    Q_t_18 = Q_t_7*axis_y_rrrrrr_axes5_in_base_z - Q_t_10*axis_z_rrrrrr_axes5_in_base_z
-    Q_t_19 = 2.0*Q_t_18 + d_c_xx
-    # (rrrrrr-V28) moment part of reciprocal wrench 1
-    o_1_t = end_p1_r8_y*w_1_t_93
-    o_1_t_2 = end_p1_r8_y*w_1_t_94
-    o_1_y = end_p1_r6_x*w_1_t_94 - end_p1_r8_x*w_1_t_93
-    # (rrrrrr-V29) moment part of reciprocal wrench 2
-    o_2_t = end_p1_r8_y*w_2_t_5
-    o_2_t_2 = end_p1_r8_y*w_2_t_6
-    o_2_y = end_p1_r8_x*w_2_t_5 - end_p1_r6_x*w_2_t_6
-    # (rrrrrr-V30) moment part of reciprocal wrench 3
-    o_3_t = end_p1_r8_y*w_3_t_4
-    o_3_t_2 = end_p1_r8_y*w_3_t_5
-    o_3_y = end_p1_r8_x*w_3_t_4 - end_p1_r6_x*w_3_t_5
-    # (rrrrrr-V31) moment part of reciprocal wrench 4
-    o_4_t = end_p1_r8_y*w_4_t_7
-    o_4_t_2 = end_p1_r8_y*w_4_t_8
-    o_4_y = end_p1_r8_x*w_4_t_7 - end_p1_r6_x*w_4_t_8
-    # (rrrrrr-V32) moment part of reciprocal wrench 5
-    o_5_t = end_p1_r8_y*w_5_t_8
-    o_5_t_2 = end_p1_r8_y*w_5_t_9
-    o_5_y = end_p1_r6_x*w_5_t_9 - end_p1_r8_x*w_5_t_8
-    # (rrrrrr-N111) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-    d0_Gamma_1_x = (
-    Jc_1_zz*o_1_t + L_c5_r5_y*o_5_t - L_c3_2_r0_y*o_3_t - L_c4_2_r0_y*o_4_t - _y_4*o_2_t
-    )
-    d0_Gamma_1_y = (
-    Jc_1_zz*o_1_y + L_c3_2_r0_y*o_3_y + L_c4_2_r0_y*o_4_y + L_c5_r5_y*o_5_y + _y_4*o_2_y
-    )
-    d0_Gamma_1_z = (
-    L_c3_2_r0_y*o_3_t_2 + L_c4_2_r0_y*o_4_t_2 + _y_4*o_2_t_2 - Jc_1_zz*o_1_t_2 - L_c5_r5_y*o_5_t_2
-    )
-    # (rrrrrr-N101) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-    d0_Gamma_2_t = L_c5_r2_y*o_5_t
-    d0_Gamma_2_t_2 = L_c5_r2_y*o_5_y
-    d0_Gamma_2_t_3 = L_c5_r2_y*o_5_t_2
-    d0_Gamma_2_x = d0_Gamma_2_t + _y_4*o_1_t - Jc_2_zz*o_2_t - L_c3_2_z*o_3_t - L_c4_2_z*o_4_t
-    d0_Gamma_2_y = d0_Gamma_2_t_2 + Jc_2_zz*o_2_y + L_c3_2_z*o_3_y + L_c4_2_z*o_4_y + _y_4*o_1_y
-    d0_Gamma_2_z = (
-    Jc_2_zz*o_2_t_2 + L_c3_2_z*o_3_t_2 + L_c4_2_z*o_4_t_2 - d0_Gamma_2_t_3 - _y_4*o_1_t_2
-    )
-    # (rrrrrr-N89) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-    d0_Gamma_3_x = (
-    d0_Gamma_2_t + L_c3_2_r0_y*o_1_t - Jc_3_zz*o_3_t - L_c3_2_z*o_2_t - L_c4_3_z*o_4_t
-    )
-    d0_Gamma_3_y = (
-    d0_Gamma_2_t_2 + Jc_3_zz*o_3_y + L_c3_2_r0_y*o_1_y + L_c3_2_z*o_2_y + L_c4_3_z*o_4_y
-    )
-    d0_Gamma_3_z = (
-    Jc_3_zz*o_3_t_2 + L_c3_2_z*o_2_t_2 + L_c4_3_z*o_4_t_2 - d0_Gamma_2_t_3 - L_c3_2_r0_y*o_1_t_2
-    )
-    # (rrrrrr-N77) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
-    d0_Gamma_4_x = L_c4_2_r0_y*o_1_t + _y*o_5_t - Jc_4_zz*o_4_t - L_c4_2_z*o_2_t - L_c4_3_z*o_3_t
-    d0_Gamma_4_y = Jc_4_zz*o_4_y + L_c4_2_r0_y*o_1_y + L_c4_2_z*o_2_y + L_c4_3_z*o_3_y + _y*o_5_y
-    d0_Gamma_4_z = (
-    Jc_4_zz*o_4_t_2 + L_c4_2_z*o_2_t_2 + L_c4_3_z*o_3_t_2 - L_c4_2_r0_y*o_1_t_2 - _y*o_5_t_2
-    )
-    # (rrrrrr-N67) coefficient of the acceleration in: moment about axis 5 of the distal links' inertia and weight
-    d0_Gamma_5_x = J_5_zz*o_5_t + L_c5_r5_y*o_1_t - L_c5_r2_y*o_2_t - L_c5_r2_y*o_3_t - _y*o_4_t
-    d0_Gamma_5_y = J_5_zz*o_5_y + L_c5_r2_y*o_2_y + L_c5_r2_y*o_3_y + L_c5_r5_y*o_1_y + _y*o_4_y
-    d0_Gamma_5_z = (
-    L_c5_r2_y*o_2_t_2 + L_c5_r2_y*o_3_t_2 + _y*o_4_t_2 - J_5_zz*o_5_t_2 - L_c5_r5_y*o_1_t_2
-    )
-    # (rrrrrr-A47) coefficient of the acceleration in: angular acceleration of link 5
-    d0_alpha_5_xx = e_1_r6_x*o_1_t - o_2_t*v_2_t - o_3_t*v_2_t - o_4_t*s_5
-    d0_alpha_5_xy = e_1_r6_x*o_1_y + o_2_y*v_2_t + o_3_y*v_2_t + o_4_y*s_5
-    d0_alpha_5_xz = o_2_t_2*v_2_t + o_3_t_2*v_2_t + o_4_t_2*s_5 - e_1_r6_x*o_1_t_2
-    d0_alpha_5_yx = c_5_t*o_4_t + e_1_r6_y*o_1_t - o_2_t*v_2_t_2 - o_3_t*v_2_t_2
-    d0_alpha_5_yy = e_1_r6_y*o_1_y + o_2_y*v_2_t_2 + o_3_y*v_2_t_2 - c_5_t*o_4_y
-    d0_alpha_5_yz = o_2_t_2*v_2_t_2 + o_3_t_2*v_2_t_2 - c_5_t*o_4_t_2 - e_1_r6_y*o_1_t_2
-    d0_alpha_5_zx = o_5_t - o_1_t*v_1_t - o_2_t*s_4 - o_3_t*s_4
-    d0_alpha_5_zy = o_5_y + o_2_y*s_4 + o_3_y*s_4 - o_1_y*v_1_t
-    d0_alpha_5_zz = o_1_t_2*v_1_t + o_2_t_2*s_4 + o_3_t_2*s_4 - o_5_t_2
-    # (rrrrrr-N131) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d0_c_xx = (
-    d0_Gamma_1_x*w_1_t_90 + d0_Gamma_5_x*w_5_t_5 + d0_alpha_5_zx*h_5_y - d0_Gamma_2_x*w_2_t_2 -
-        d0_Gamma_3_x*w_3_t - d0_Gamma_4_x*w_4_t_4 - d0_alpha_5_yx*h_5_z
-    )
-    d0_c_xy = (
-    d0_Gamma_1_y*w_1_t_90 + d0_Gamma_5_y*w_5_t_5 + d0_alpha_5_zy*h_5_y - d0_Gamma_2_y*w_2_t_2 -
-        d0_Gamma_3_y*w_3_t - d0_Gamma_4_y*w_4_t_4 - d0_alpha_5_yy*h_5_z
-    )
-    d0_c_xz = (
-    d0_Gamma_1_z*w_1_t_90 + d0_Gamma_5_z*w_5_t_5 + d0_alpha_5_zz*h_5_y - d0_Gamma_2_z*w_2_t_2 -
-        d0_Gamma_3_z*w_3_t - d0_Gamma_4_z*w_4_t_4 - d0_alpha_5_yz*h_5_z
-    )
-    d0_c_yx = (
-    d0_Gamma_2_x*w_2_t_3 + d0_Gamma_3_x*w_3_t_2 + d0_Gamma_4_x*w_4_t_5 + d0_alpha_5_xx*h_5_z -
-        d0_Gamma_1_x*w_1_t_91 - d0_Gamma_5_x*w_5_t_6 - d0_alpha_5_zx*h_5_x
-    )
-    d0_c_yy = (
-    d0_Gamma_2_y*w_2_t_3 + d0_Gamma_3_y*w_3_t_2 + d0_Gamma_4_y*w_4_t_5 + d0_alpha_5_xy*h_5_z -
-        d0_Gamma_1_y*w_1_t_91 - d0_Gamma_5_y*w_5_t_6 - d0_alpha_5_zy*h_5_x
-    )
-    d0_c_yz = (
-    d0_Gamma_2_z*w_2_t_3 + d0_Gamma_3_z*w_3_t_2 + d0_Gamma_4_z*w_4_t_5 + d0_alpha_5_xz*h_5_z -
-        d0_Gamma_1_z*w_1_t_91 - d0_Gamma_5_z*w_5_t_6 - d0_alpha_5_zz*h_5_x
-    )
-    d0_c_zx = (
-    d0_Gamma_1_x*w_1_t_92 + d0_Gamma_2_x*w_2_t_4 + d0_Gamma_5_x*w_5_t_7 + d0_alpha_5_yx*h_5_x -
-        d0_Gamma_3_x*w_3_t_3 - d0_Gamma_4_x*w_4_t_6 - d0_alpha_5_xx*h_5_y
-    )
-    d0_c_zy = (
-    d0_Gamma_1_y*w_1_t_92 + d0_Gamma_2_y*w_2_t_4 + d0_Gamma_5_y*w_5_t_7 + d0_alpha_5_yy*h_5_x -
-        d0_Gamma_3_y*w_3_t_3 - d0_Gamma_4_y*w_4_t_6 - d0_alpha_5_xy*h_5_y
-    )
-    d0_c_zz = (
-    d0_Gamma_1_z*w_1_t_92 + d0_Gamma_2_z*w_2_t_4 + d0_Gamma_5_z*w_5_t_7 + d0_alpha_5_yz*h_5_x -
-        d0_Gamma_3_z*w_3_t_3 - d0_Gamma_4_z*w_4_t_6 - d0_alpha_5_xz*h_5_y
-    )
-    # (M2) coupling block of M
-    q_in_base_x = (
-    R_xx*rrrrrr_platform_point_x + R_xy*rrrrrr_platform_point_y + R_xz*rrrrrr_platform_point_z
-    )
-    q_in_base_y = (
-    R_yx*rrrrrr_platform_point_x + R_yy*rrrrrr_platform_point_y + R_yz*rrrrrr_platform_point_z
-    )
-    q_in_base_z = (
-    R_zx*rrrrrr_platform_point_x + R_zy*rrrrrr_platform_point_y + R_zz*rrrrrr_platform_point_z
-    )
-    M_ta_t = Q_t_13*q_in_base_z
-    M_ta_t_2 = Q_t_14*q_in_base_y
-    M_ta_t_3 = Q_t_12*q_in_base_z - Q_t_14*q_in_base_x
-    M_ta_t_4 = Q_t_12*q_in_base_y - Q_t_13*q_in_base_x
-    M_ta_t_5 = Q_t_16*q_in_base_z - Q_t_17*q_in_base_y
-    M_ta_t_6 = Q_t_17*q_in_base_x
-    M_ta_t_7 = M_ta_t - M_ta_t_6
-    M_ta_t_8 = Q_t_13*q_in_base_y - Q_t_16*q_in_base_x
-    M_ta_t_9 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y
-    M_ta_t_10 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x
-    M_ta_t_11 = M_ta_t_2 - M_ta_t_6
-    # (rrrrrr-N131) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d0_c_in_base_x = (
-    axis_x_rrrrrr_axes5_x*d0_c_xx + axis_y_rrrrrr_axes5_in_base_x*d0_c_yx +
-        axis_z_rrrrrr_axes5_in_base_x*d0_c_zx
-    )
-    d0_c_in_base_y = (
-    axis_x_rrrrrr_axes5_y*d0_c_xx + axis_y_rrrrrr_axes5_in_base_y*d0_c_yx +
-        axis_z_rrrrrr_axes5_in_base_y*d0_c_zx
-    )
-    d0_c_in_base_z = (
-    axis_x_rrrrrr_axes5_z*d0_c_xx + axis_y_rrrrrr_axes5_in_base_z*d0_c_yx +
-        axis_z_rrrrrr_axes5_in_base_z*d0_c_zx
-    )
-    d0_c_in_base_x_2 = (
-    axis_x_rrrrrr_axes5_x*d0_c_xy + axis_y_rrrrrr_axes5_in_base_x*d0_c_yy +
-        axis_z_rrrrrr_axes5_in_base_x*d0_c_zy
-    )
-    d0_c_in_base_y_2 = (
-    axis_x_rrrrrr_axes5_y*d0_c_xy + axis_y_rrrrrr_axes5_in_base_y*d0_c_yy +
-        axis_z_rrrrrr_axes5_in_base_y*d0_c_zy
-    )
-    d0_c_in_base_z_2 = (
-    axis_x_rrrrrr_axes5_z*d0_c_xy + axis_y_rrrrrr_axes5_in_base_z*d0_c_yy +
-        axis_z_rrrrrr_axes5_in_base_z*d0_c_zy
-    )
-    d0_c_in_base_x_3 = (
-    axis_x_rrrrrr_axes5_x*d0_c_xz + axis_y_rrrrrr_axes5_in_base_x*d0_c_yz +
-        axis_z_rrrrrr_axes5_in_base_x*d0_c_zz
-    )
-    d0_c_in_base_y_3 = (
-    axis_x_rrrrrr_axes5_y*d0_c_xz + axis_y_rrrrrr_axes5_in_base_y*d0_c_yz +
-        axis_z_rrrrrr_axes5_in_base_y*d0_c_zz
-    )
-    d0_c_in_base_z_3 = (
-    axis_x_rrrrrr_axes5_z*d0_c_xz + axis_y_rrrrrr_axes5_in_base_z*d0_c_yz +
-        axis_z_rrrrrr_axes5_in_base_z*d0_c_zz
-    )
-    d0_c_in_base_y_4 = (
-    axis_x_rrrrrr_axes5_y*d0_c_in_base_x + axis_y_rrrrrr_axes5_in_base_y*d0_c_in_base_x_2 +
-        axis_z_rrrrrr_axes5_in_base_y*d0_c_in_base_x_3
-    )
-    d0_c_in_base_z_4 = (
-    axis_x_rrrrrr_axes5_z*d0_c_in_base_x + axis_y_rrrrrr_axes5_in_base_z*d0_c_in_base_x_2 +
-        axis_z_rrrrrr_axes5_in_base_z*d0_c_in_base_x_3
-    )
-    d0_c_in_base_x_4 = (
-    axis_x_rrrrrr_axes5_x*d0_c_in_base_y + axis_y_rrrrrr_axes5_in_base_x*d0_c_in_base_y_2 +
-        axis_z_rrrrrr_axes5_in_base_x*d0_c_in_base_y_3
-    )
-    d0_c_in_base_y_5 = (
-    axis_x_rrrrrr_axes5_y*d0_c_in_base_y + axis_y_rrrrrr_axes5_in_base_y*d0_c_in_base_y_2 +
-        axis_z_rrrrrr_axes5_in_base_y*d0_c_in_base_y_3
-    )
-    d0_c_in_base_z_5 = (
-    axis_x_rrrrrr_axes5_z*d0_c_in_base_y + axis_y_rrrrrr_axes5_in_base_z*d0_c_in_base_y_2 +
-        axis_z_rrrrrr_axes5_in_base_z*d0_c_in_base_y_3
-    )
-    d0_c_in_base_x_5 = (
-    axis_x_rrrrrr_axes5_x*d0_c_in_base_z + axis_y_rrrrrr_axes5_in_base_x*d0_c_in_base_z_2 +
-        axis_z_rrrrrr_axes5_in_base_x*d0_c_in_base_z_3
-    )
-    d0_c_in_base_y_6 = (
-    axis_x_rrrrrr_axes5_y*d0_c_in_base_z + axis_y_rrrrrr_axes5_in_base_y*d0_c_in_base_z_2 +
-        axis_z_rrrrrr_axes5_in_base_y*d0_c_in_base_z_3
-    )
-    d0_c_in_base_z_6 = (
-    axis_x_rrrrrr_axes5_z*d0_c_in_base_z + axis_y_rrrrrr_axes5_in_base_z*d0_c_in_base_z_2 +
-        axis_z_rrrrrr_axes5_in_base_z*d0_c_in_base_z_3
-    )
-    # (M2) coupling block of M
-    M_ta_t_12 = (
-    M_ta_t - M_ta_t_2 - axis_x_rrrrrr_axes5_x*d0_c_in_base_x -
-        axis_y_rrrrrr_axes5_in_base_x*d0_c_in_base_x_2 -
-        axis_z_rrrrrr_axes5_in_base_x*d0_c_in_base_x_3
-    )
-    M_ta_t_13 = M_ta_t_3 + d0_c_in_base_y_4
-    M_ta_t_14 = M_ta_t_4 - d0_c_in_base_z_4
-    M_ta_t_15 = M_ta_t_5 - d0_c_in_base_x_4
-    M_ta_t_16 = M_ta_t_7 + d0_c_in_base_y_5
-    M_ta_t_17 = M_ta_t_8 - d0_c_in_base_z_5
-    M_ta_t_18 = M_ta_t_9 - d0_c_in_base_x_5
-    M_ta_t_19 = M_ta_t_10 + d0_c_in_base_y_6
-    M_ta_t_20 = M_ta_t_11 - d0_c_in_base_z_6
-    # (rrrrrr-N119) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-    d0_G_m1_x = (
-    d0_Gamma_2_x*w_2_t_5 + d0_Gamma_3_x*w_3_t_4 + d0_Gamma_4_x*w_4_t_7 - d0_Gamma_1_x*w_1_t_93 -
-        d0_Gamma_5_x*w_5_t_8
-    )
-    d0_G_m1_y = (
-    d0_Gamma_2_y*w_2_t_5 + d0_Gamma_3_y*w_3_t_4 + d0_Gamma_4_y*w_4_t_7 - d0_Gamma_1_y*w_1_t_93 -
-        d0_Gamma_5_y*w_5_t_8
-    )
-    d0_G_m1_z = (
-    d0_Gamma_2_z*w_2_t_5 + d0_Gamma_3_z*w_3_t_4 + d0_Gamma_4_z*w_4_t_7 - d0_Gamma_1_z*w_1_t_93 -
-        d0_Gamma_5_z*w_5_t_8
-    )
-    # (rrrrrr-N123) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
-    d0_G_m2_x = (
-    d0_Gamma_2_x*w_2_t_6 + d0_Gamma_3_x*w_3_t_5 + d0_Gamma_4_x*w_4_t_8 - d0_Gamma_1_x*w_1_t_94 -
-        d0_Gamma_5_x*w_5_t_9
-    )
-    d0_G_m2_y = (
-    d0_Gamma_2_y*w_2_t_6 + d0_Gamma_3_y*w_3_t_5 + d0_Gamma_4_y*w_4_t_8 - d0_Gamma_1_y*w_1_t_94 -
-        d0_Gamma_5_y*w_5_t_9
-    )
-    d0_G_m2_z = (
-    d0_Gamma_2_z*w_2_t_6 + d0_Gamma_3_z*w_3_t_5 + d0_Gamma_4_z*w_4_t_8 - d0_Gamma_1_z*w_1_t_94 -
-        d0_Gamma_5_z*w_5_t_9
-    )
-    # (rrrrrr-N120) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-    d_G_m1_x = (
-    d_Gamma_2_x*w_2_t_5 + d_Gamma_3_x*w_3_t_4 + d_Gamma_4_x*w_4_t_7 - d_Gamma_1_x*w_1_t_93 -
-        d_Gamma_5_x*w_5_t_8
-    )
-    d_G_m1_y = (
-    d_Gamma_2_y*w_2_t_5 + d_Gamma_3_y*w_3_t_4 + d_Gamma_4_y*w_4_t_7 - d_Gamma_1_y*w_1_t_93 -
-        d_Gamma_5_y*w_5_t_8
-    )
-    d_G_m1_z = (
-    d_Gamma_2_z*w_2_t_5 + d_Gamma_3_z*w_3_t_4 + d_Gamma_4_z*w_4_t_7 - d_Gamma_1_z*w_1_t_93 -
-        d_Gamma_5_t_6*w_5_t_8
-    )
-    # (rrrrrr-N124) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
-    d_G_m2_x = (
-    d_Gamma_2_x*w_2_t_6 + d_Gamma_3_x*w_3_t_5 + d_Gamma_4_x*w_4_t_8 - d_Gamma_1_x*w_1_t_94 -
-        d_Gamma_5_x*w_5_t_9
-    )
-    d_G_m2_y = (
-    d_Gamma_2_y*w_2_t_6 + d_Gamma_3_y*w_3_t_5 + d_Gamma_4_y*w_4_t_8 - d_Gamma_1_y*w_1_t_94 -
-        d_Gamma_5_y*w_5_t_9
-    )
-    d_G_m2_z = (
-    d_Gamma_2_z*w_2_t_6 + d_Gamma_3_z*w_3_t_5 + d_Gamma_4_z*w_4_t_8 - d_Gamma_1_z*w_1_t_94 -
-        d_Gamma_5_t_6*w_5_t_9
-    )
-    # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
-    n_m1_in_base_x = axis_y_rrrrrr_axes5_in_base_x*end_p1_r8_x - axis_x_rrrrrr_axes5_x*end_p1_r8_y
-    n_m1_in_base_y = axis_y_rrrrrr_axes5_in_base_y*end_p1_r8_x - axis_x_rrrrrr_axes5_y*end_p1_r8_y
-    n_m1_in_base_z = axis_y_rrrrrr_axes5_in_base_z*end_p1_r8_x - axis_x_rrrrrr_axes5_z*end_p1_r8_y
-    # (rrrrrr-N120) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-    d_G_m1_in_base_x = (
-    axis_x_rrrrrr_axes5_x*d_G_m1_x + axis_y_rrrrrr_axes5_in_base_x*d_G_m1_y +
-        axis_z_rrrrrr_axes5_in_base_x*d_G_m1_z
-    )
-    d_G_m1_in_base_y = (
-    axis_x_rrrrrr_axes5_y*d_G_m1_x + axis_y_rrrrrr_axes5_in_base_y*d_G_m1_y +
-        axis_z_rrrrrr_axes5_in_base_y*d_G_m1_z
-    )
-    d_G_m1_in_base_z = (
-    axis_x_rrrrrr_axes5_z*d_G_m1_x + axis_y_rrrrrr_axes5_in_base_z*d_G_m1_y +
-        axis_z_rrrrrr_axes5_in_base_z*d_G_m1_z
-    )
-    # (rrrrrr-V12) direction 2 of the moment that the platform joint transmits
-    n_m2_in_base_x = (
-    axis_z_rrrrrr_axes5_in_base_x*end_p1_r8_y - axis_y_rrrrrr_axes5_in_base_x*end_p1_r6_x
-    )
-    n_m2_in_base_y = (
-    axis_z_rrrrrr_axes5_in_base_y*end_p1_r8_y - axis_y_rrrrrr_axes5_in_base_y*end_p1_r6_x
-    )
-    n_m2_in_base_z = (
-    axis_z_rrrrrr_axes5_in_base_z*end_p1_r8_y - axis_y_rrrrrr_axes5_in_base_z*end_p1_r6_x
-    )
-    # (rrrrrr-N124) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
-    d_G_m2_in_base_x = (
-    axis_x_rrrrrr_axes5_x*d_G_m2_x + axis_y_rrrrrr_axes5_in_base_x*d_G_m2_y +
-        axis_z_rrrrrr_axes5_in_base_x*d_G_m2_z
-    )
-    d_G_m2_in_base_y = (
-    axis_x_rrrrrr_axes5_y*d_G_m2_x + axis_y_rrrrrr_axes5_in_base_y*d_G_m2_y +
-        axis_z_rrrrrr_axes5_in_base_y*d_G_m2_z
-    )
-    d_G_m2_in_base_z = (
-    axis_x_rrrrrr_axes5_z*d_G_m2_x + axis_y_rrrrrr_axes5_in_base_z*d_G_m2_y +
-        axis_z_rrrrrr_axes5_in_base_z*d_G_m2_z
-    )
-    # (rrrrrr-N128) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-    d_G_m_xx = d_G_m1_in_base_x*n_m1_in_base_x + d_G_m2_in_base_x*n_m2_in_base_x
-    d_G_m_xy = d_G_m1_in_base_y*n_m1_in_base_x + d_G_m2_in_base_y*n_m2_in_base_x
-    d_G_m_xz = d_G_m1_in_base_z*n_m1_in_base_x + d_G_m2_in_base_z*n_m2_in_base_x
-    d_G_m_yx = d_G_m1_in_base_x*n_m1_in_base_y + d_G_m2_in_base_x*n_m2_in_base_y
-    # (rrrrrr-N119) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-    d0_G_m1_in_base_y = (
-    axis_x_rrrrrr_axes5_y*d0_G_m1_x + axis_y_rrrrrr_axes5_in_base_y*d0_G_m1_y +
-        axis_z_rrrrrr_axes5_in_base_y*d0_G_m1_z
-    )
-    d0_G_m1_in_base_z = (
-    axis_x_rrrrrr_axes5_z*d0_G_m1_x + axis_y_rrrrrr_axes5_in_base_z*d0_G_m1_y +
-        axis_z_rrrrrr_axes5_in_base_z*d0_G_m1_z
-    )
-    # (rrrrrr-N123) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
-    d0_G_m2_in_base_y = (
-    axis_x_rrrrrr_axes5_y*d0_G_m2_x + axis_y_rrrrrr_axes5_in_base_y*d0_G_m2_y +
-        axis_z_rrrrrr_axes5_in_base_y*d0_G_m2_z
-    )
-    d0_G_m2_in_base_z = (
-    axis_x_rrrrrr_axes5_z*d0_G_m2_x + axis_y_rrrrrr_axes5_in_base_z*d0_G_m2_y +
-        axis_z_rrrrrr_axes5_in_base_z*d0_G_m2_z
-    )
-    # (M3) rotational block of M
-    M_aa_t = (
-    M_ta_t_5*q_in_base_z + d0_c_in_base_x_5*q_in_base_y + d_G_m_xy*q_in_base_z -
-        M_ta_t_9*q_in_base_y - d0_c_in_base_x_4*q_in_base_z - d_G_m_xz*q_in_base_y -
-        n_m1_in_base_x*(axis_x_rrrrrr_axes5_x*d0_G_m1_x + axis_y_rrrrrr_axes5_in_base_x*d0_G_m1_y
-        + axis_z_rrrrrr_axes5_in_base_x*d0_G_m1_z) -
-        n_m2_in_base_x*(axis_x_rrrrrr_axes5_x*d0_G_m2_x + axis_y_rrrrrr_axes5_in_base_x*d0_G_m2_y
-        + axis_z_rrrrrr_axes5_in_base_x*d0_G_m2_z)
-    )
-    M_aa_t_2 = (
-    M_ta_t_7*q_in_base_z + d0_G_m1_in_base_y*n_m1_in_base_x + d0_G_m2_in_base_y*n_m2_in_base_x +
-        d0_c_in_base_y_5*q_in_base_z + d_G_m_xx*q_in_base_z - M_ta_t_10*q_in_base_y -
-        d0_c_in_base_y_6*q_in_base_y - d_G_m_xz*q_in_base_x
-    )
-    M_aa_t_3 = (
-    M_ta_t_11*q_in_base_y + d0_G_m1_in_base_z*n_m1_in_base_x + d0_G_m2_in_base_z*n_m2_in_base_x +
-        d0_c_in_base_z_5*q_in_base_z + d_G_m_xy*q_in_base_x - M_ta_t_8*q_in_base_z -
-        d0_c_in_base_z_6*q_in_base_y - d_G_m_xx*q_in_base_y
-    )
-    M_aa_t_4 = (
-    M_ta_t_3*q_in_base_z + d0_c_in_base_y_4*q_in_base_z +
-        q_in_base_x*(d_G_m1_in_base_z*n_m1_in_base_y + d_G_m2_in_base_z*n_m2_in_base_y) -
-        M_ta_t_10*q_in_base_x - d0_G_m1_in_base_y*n_m1_in_base_y -
-        d0_G_m2_in_base_y*n_m2_in_base_y - d0_c_in_base_y_6*q_in_base_x - d_G_m_yx*q_in_base_z
-    )
-    M_aa_t_5 = (
-    M_ta_t_4*q_in_base_z + d0_G_m1_in_base_z*n_m1_in_base_y + d0_G_m2_in_base_z*n_m2_in_base_y +
-        d0_c_in_base_z_6*q_in_base_x + q_in_base_x*(d_G_m1_in_base_y*n_m1_in_base_y +
-        d_G_m2_in_base_y*n_m2_in_base_y) - M_ta_t_11*q_in_base_x - d0_c_in_base_z_4*q_in_base_z -
-        d_G_m_yx*q_in_base_y
-    )
-    M_aa_t_6 = (
-    M_ta_t_4*q_in_base_y + d0_c_in_base_z_5*q_in_base_x +
-        q_in_base_y*(d_G_m1_in_base_x*n_m1_in_base_z + d_G_m2_in_base_x*n_m2_in_base_z) -
-        M_ta_t_8*q_in_base_x - d0_G_m1_in_base_z*n_m1_in_base_z - d0_G_m2_in_base_z*n_m2_in_base_z
-        - d0_c_in_base_z_4*q_in_base_y - q_in_base_x*(d_G_m1_in_base_y*n_m1_in_base_z +
-        d_G_m2_in_base_y*n_m2_in_base_z)
-    )
-    ok = (abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE * size) & (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) & (abs(w_1_t_82) > _TOLERANCE * size)
-    return (
-    ok, (Q_t_12, Q_t_13, Q_t_14, Q_t_16, Q_t_17, Q_t_19, M_ta_t_12, M_ta_t_13, M_ta_t_14,
-        M_ta_t_15, M_ta_t_16, M_ta_t_17, M_ta_t_18, M_ta_t_19, M_ta_t_20, M_aa_t, M_aa_t_2,
-        M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6,), (),
-    )
-
-
-def _M_after(c, s, t, f):
-    m_star, = c
-    (
-    h_star_in_base_x, h_star_in_base_y, h_star_in_base_z, J_star_t_8, J_star_t_9, J_star_t_10,
-        J_star_t_12, J_star_t_13, J_star_t_15,
-    ) = s
+    sums = [0.0] * 21
+    for leg, k in legs[0]:
+        (
+        J_1_xx, J_2_xx, J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_2_zz, J_3_xx, J_3_xy, J_3_xz, J_3_yy,
+            J_3_yz, J_3_zz, J_4_xx, J_4_xy, J_4_xz, J_4_yy, J_4_yz, J_5_xx, J_5_xy, J_5_xz,
+            J_5_yy, J_5_yz, J_5_zz, Jc_2_t, Jc_3_t_2, Jc_3_t_3, Jc_4_xx, h_3_y, h_3_z, h_4_y,
+            h_4_z, h_5_x, h_5_y, h_5_z, hc_3_x, rrrrrr_base_frame_xx, rrrrrr_base_frame_xy,
+            rrrrrr_base_frame_xz, rrrrrr_base_frame_yx, rrrrrr_base_frame_yy,
+            rrrrrr_base_frame_yz, rrrrrr_base_frame_zx, rrrrrr_base_frame_zy,
+            rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x, rrrrrr_joint3_offset_x,
+            rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x, rrrrrr_platform_joint_axis_platform_x,
+            rrrrrr_platform_joint_axis_platform_y, rrrrrr_platform_joint_axis_platform_z,
+            rrrrrr_platform_joint_offset_x, rrrrrr_platform_point_x, rrrrrr_platform_point_y,
+            rrrrrr_platform_point_z, size, size_t,
+        ) = k
+        q_1 = q[[0, 5, 10, 15, 20, 25][leg]]
+        q_2 = q[[1, 6, 11, 16, 21, 26][leg]]
+        q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
+        q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
+        q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
+        # (rrrrrr-K10) cosine of the angle of joint 5 from its reference direction
+        c_5_t = sin(q_5)
+        # (rrrrrr-K11) sine of the angle of joint 5 from its reference direction
+        s_5 = cos(q_5)
+        # (rrrrrr-V2) from joint 4 to the connection point, along the links
+        r_4_t = c_5_t*rrrrrr_platform_joint_offset_x
+        r_4_z = rrrrrr_joint5_offset_x + rrrrrr_platform_joint_offset_x*s_5
+        # (rrrrrr-K8) cosine of the angle of joint 4 from its reference direction
+        c_4_t = sin(q_4)
+        # (rrrrrr-K9) sine of the angle of joint 4 from its reference direction
+        s_4 = cos(q_4)
+        # (rrrrrr-V2) from joint 4 to the connection point, along the links
+        r_4_t_2 = r_4_t*s_4
+        r_4_t_3 = c_4_t*r_4_t
+        # (rrrrrr-V3) from joint 3 to the connection point, along the links
+        r_3_x = r_4_z + rrrrrr_joint4_offset_x
+        # (rrrrrr-K6) cosine of the angle of joint 3 from its reference direction
+        c_3 = cos(q_3)
+        # (rrrrrr-K7) sine of the angle of joint 3 from its reference direction
+        s_3 = sin(q_3)
+        # (rrrrrr-V3) from joint 3 to the connection point, along the links
+        r_3_r0_y = c_3*r_4_t_2 + r_3_x*s_3
+        # (rrrrrr-V4) from joint 2 to the connection point, along the links
+        r_2_x = rrrrrr_joint3_offset_x + c_3*r_3_x - r_4_t_2*s_3
+        # (rrrrrr-K4) cosine of the angle of joint 2 from its reference direction
+        c_2_t = sin(q_2)
+        # (rrrrrr-K5) sine of the angle of joint 2 from its reference direction
+        s_2 = cos(q_2)
+        # (rrrrrr-V4) from joint 2 to the connection point, along the links
+        r_2_r0_x = -c_2_t*r_2_x - r_3_r0_y*s_2
+        # (rrrrrr-V5) from joint 1 to the connection point, along the links
+        r_1_z = rrrrrr_joint2_offset_x + r_2_x*s_2 - c_2_t*r_3_r0_y
+        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
+        e_1_r2_x = c_3*s_2 - c_2_t*s_3
+        e_1_r2_y = -c_2_t*c_3 - s_2*s_3
+        v_1_t = c_4_t*e_1_r2_y
+        v_1_t_2 = e_1_r2_y*s_4
+        e_1_r6_x = c_5_t*v_1_t_2 + e_1_r2_x*s_5
+        e_1_r6_y = s_5*v_1_t_2 - c_5_t*e_1_r2_x
+        # (rrrrrr-V5) from joint 1 to the connection point, along the links
+        r_1_r1_x = r_1_z*s_2 - c_2_t*r_2_r0_x
+        r_1_r1_y = -c_2_t*r_1_z - r_2_r0_x*s_2
+        r_1_r2_x = c_3*r_1_r1_x + r_1_r1_y*s_3
+        r_1_r2_y = c_3*r_1_r1_y - r_1_r1_x*s_3
+        r_1_t = r_4_t_3*s_4
+        r_1_r4_x = r_1_t - c_4_t*r_1_r2_y
+        r_1_t_2 = c_4_t*r_4_t_3
+        r_1_r4_y = -r_1_t_2 - r_1_r2_y*s_4
+        r_1_r6_x = r_1_r2_x*s_5 - c_5_t*r_1_r4_y
+        r_1_r6_y = -c_5_t*r_1_r2_x - r_1_r4_y*s_5
+        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
+        v_1_x = e_1_r6_y*r_1_r4_x + r_1_r6_y*v_1_t
+        v_1_y = -e_1_r6_x*r_1_r4_x - r_1_r6_x*v_1_t
+        v_1_z = e_1_r6_x*r_1_r6_y - e_1_r6_y*r_1_r6_x
+        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
+        v_2_t = c_4_t*c_5_t
+        v_2_t_2 = c_4_t*s_5
+        # (rrrrrr-V4) from joint 2 to the connection point, along the links
+        r_2_r0_x_2 = c_3*r_2_x + r_3_r0_y*s_3
+        r_2_r0_y = c_3*r_3_r0_y - r_2_x*s_3
+        r_2_r2_x = r_1_t - c_4_t*r_2_r0_y
+        r_2_r2_y = -r_1_t_2 - r_2_r0_y*s_4
+        r_2_r4_x = r_2_r0_x_2*s_5 - c_5_t*r_2_r2_y
+        r_2_r4_y = -c_5_t*r_2_r0_x_2 - r_2_r2_y*s_5
+        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
+        v_2_x = r_2_r2_x*v_2_t_2 - r_2_r4_y*s_4
+        v_2_y = r_2_r4_x*s_4 - r_2_r2_x*v_2_t
+        v_2_z = r_2_r4_y*v_2_t - r_2_r4_x*v_2_t_2
+        # (rrrrrr-V3) from joint 3 to the connection point, along the links
+        r_3_r1_x = r_1_t - c_4_t*r_4_t_2
+        r_3_r1_y = -r_1_t_2 - r_4_t_2*s_4
+        r_3_r3_x = r_3_x*s_5 - c_5_t*r_3_r1_y
+        r_3_r3_y = -c_5_t*r_3_x - r_3_r1_y*s_5
+        # (rrrrrr-V8) velocity of the connection point per rate of joint 3
+        v_3_x = r_3_r1_x*v_2_t_2 - r_3_r3_y*s_4
+        v_3_y = r_3_r3_x*s_4 - r_3_r1_x*v_2_t
+        v_3_z = r_3_r3_y*v_2_t - r_3_r3_x*v_2_t_2
+        # (rrrrrr-V9) velocity of the connection point per rate of joint 4
+        v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
+        # (rrrrrr-V13) force part of reciprocal wrench 1
+        w_1_t = c_4_t*s_3
+        w_1_t_2 = c_3*c_4_t
+        axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_2 - c_2_t*w_1_t
+        axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_2 + s_2*w_1_t
+        # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
+        c_1_t = sin(q_1)
+        # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
+        s_1 = cos(q_1)
+        # (rrrrrr-V13) force part of reciprocal wrench 1
+        axis_z_rrrrrr_axes5_r7_x = -axis_z_rrrrrr_axes5_r5_x*s_1 - c_1_t*s_4
+        axis_z_rrrrrr_axes5_r7_y = s_1*s_4 - axis_z_rrrrrr_axes5_r5_x*c_1_t
+        axis_z_rrrrrr_axes5_in_base_x = (
+        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx +
+            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy +
+            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
+        )
+        axis_z_rrrrrr_axes5_in_base_y = (
+        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx +
+            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy +
+            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
+        )
+        axis_z_rrrrrr_axes5_in_base_z = (
+        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx +
+            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy +
+            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
+        )
+        w_1_t_3 = s_4*s_5
+        axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_3
+        axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_3 - c_5_t*s_3
+        axis_y_rrrrrr_axes5_r5_x = -axis_y_rrrrrr_axes5_r4_x*c_2_t - axis_y_rrrrrr_axes5_r4_y*s_2
+        axis_y_rrrrrr_axes5_r5_y = axis_y_rrrrrr_axes5_r4_x*s_2 - axis_y_rrrrrr_axes5_r4_y*c_2_t
+        axis_y_rrrrrr_axes5_r7_x = -axis_y_rrrrrr_axes5_r5_x*s_1 - c_1_t*v_2_t_2
+        axis_y_rrrrrr_axes5_r7_y = s_1*v_2_t_2 - axis_y_rrrrrr_axes5_r5_x*c_1_t
+        axis_y_rrrrrr_axes5_in_base_x = (
+        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx +
+            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy +
+            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
+        )
+        axis_y_rrrrrr_axes5_in_base_y = (
+        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx +
+            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy +
+            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
+        )
+        axis_y_rrrrrr_axes5_in_base_z = (
+        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx +
+            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy +
+            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
+        )
+        axis_x_rrrrrr_axes5_x = (
+        axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_z -
+            axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_y
+        )
+        axis_x_rrrrrr_axes5_y = (
+        axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_x -
+            axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_z
+        )
+        axis_x_rrrrrr_axes5_z = (
+        axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_y -
+            axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_x
+        )
+        # (rrrrrr-G13) inertia tensor of link 5 about the connection point
+        J_5_t = J_5_xy*s_5
+        _x = -J_5_t - J_5_xx*c_5_t
+        J_5_t_2 = J_5_xy*c_5_t
+        _x_2 = -J_5_t_2 - J_5_yy*s_5
+        _x_3 = -J_5_xz*c_5_t - J_5_yz*s_5
+        _y = J_5_xz*s_5 - J_5_yz*c_5_t
+        # (rrrrrr-N33) inertia tensor of the links from 4 outwards about joint 4
+        Jc_4_xy = _x_3 - J_4_yz
+        Jc_4_xz = J_4_xz + _y
+        Jc_4_yy = J_4_yy - _x*c_5_t - _x_2*s_5
+        Jc_4_yz = _x*s_5 - J_4_xy - _x_2*c_5_t
+        Jc_4_zz = J_4_xx + s_5*(J_5_xx*s_5 - J_5_t_2) - c_5_t*(J_5_t - J_5_yy*c_5_t)
+        Jc_4_t = Jc_4_xy*s_4
+        _x_4 = -Jc_4_t - Jc_4_xx*c_4_t
+        Jc_4_t_2 = Jc_4_xy*c_4_t
+        _x_5 = -Jc_4_t_2 - Jc_4_yy*s_4
+        _x_6 = -Jc_4_xz*c_4_t - Jc_4_yz*s_4
+        _y_2 = Jc_4_xz*s_4 - Jc_4_yz*c_4_t
+        # (rrrrrr-G9) first moment of link 4 about the origin of link 4
+        h_4_r1_x = h_4_y*s_4 - c_4_t*h_4_z
+        h_4_r1_y = c_4_t*h_4_y + h_4_z*s_4
+        # (rrrrrr-N44) inertia tensor of the links from 3 outwards about joint 3
+        Jc_3_t = h_4_r1_x*rrrrrr_joint4_offset_x
+        Jc_3_t_4 = h_4_r1_y*rrrrrr_joint4_offset_x
+        Jc_3_xx = J_3_xx + Jc_3_t_3 + Jc_4_zz - 2.0*Jc_3_t_2
+        Jc_3_xy = J_3_xy + _x_6 - Jc_3_t
+        Jc_3_xz = J_3_xz + _y_2 - Jc_3_t_4
+        Jc_3_yy = J_3_yy + Jc_3_t_3 - _x_4*c_4_t - _x_5*s_4
+        Jc_3_yz = J_3_yz + _x_4*s_4 - _x_5*c_4_t
+        Jc_3_zz = (
+        J_3_zz + Jc_3_t_3 + s_4*(Jc_4_xx*s_4 - Jc_4_t_2) - c_4_t*(Jc_4_t - Jc_4_yy*c_4_t)
+        )
+        # (rrrrrr-N43) first moment of the links from 3 outwards
+        hc_3_y = h_3_y + h_4_r1_x
+        hc_3_z = h_3_z + h_4_r1_y
+        # (rrrrrr-N44) inertia tensor of the links from 3 outwards about joint 3
+        Jc_3_t_5 = Jc_3_xy*s_3
+        _x_7 = Jc_3_xx*c_3 - Jc_3_t_5
+        Jc_3_t_6 = Jc_3_xy*c_3
+        _x_8 = Jc_3_t_6 - Jc_3_yy*s_3
+        _x_9 = Jc_3_xz*c_3 - Jc_3_yz*s_3
+        _y_3 = Jc_3_xz*s_3 + Jc_3_yz*c_3
+        # (rrrrrr-N43) first moment of the links from 3 outwards
+        hc_3_r0_x = c_3*hc_3_x - hc_3_y*s_3
+        hc_3_r0_y = c_3*hc_3_y + hc_3_x*s_3
+        # (rrrrrr-N53) inertia tensor of the links from 2 outwards about joint 2
+        Jc_2_t_2 = rrrrrr_joint3_offset_x*(Jc_2_t + hc_3_r0_x)
+        Jc_2_t_3 = 2.0*Jc_2_t_2
+        Jc_2_xy = J_2_xy + _x_7*s_3 + _x_8*c_3 - hc_3_r0_y*rrrrrr_joint3_offset_x
+        Jc_2_zz = J_2_zz + Jc_2_t_3 + Jc_3_zz
+        _y_4 = s_2*(J_2_xz + _x_9 - hc_3_z*rrrrrr_joint3_offset_x) - c_2_t*(J_2_yz + _y_3)
+        _y_5 = (
+        s_2*(s_2*(J_2_xx + Jc_2_t_3 + _x_7*c_3 - 2.0*Jc_2_t_2 - _x_8*s_3) - Jc_2_xy*c_2_t) -
+            c_2_t*(Jc_2_xy*s_2 - c_2_t*(J_2_yy + Jc_2_t_3 + c_3*(Jc_3_t_5 + Jc_3_yy*c_3) +
+            s_3*(Jc_3_t_6 + Jc_3_xx*s_3)))
+        )
+        # (rrrrrr-N59) inertia tensor of the links from 1 outwards about joint 1
+        Jc_1_zz = J_1_xx + _y_5
+        # (rrrrrr-N48) moment about joint 2 that accelerates joint 3, per unit
+        L_c3_2_z = Jc_3_zz + hc_3_r0_x*rrrrrr_joint3_offset_x
+        L_c3_2_r0_y = _x_9*s_2 - _y_3*c_2_t
+        # (rrrrrr-N37) moment about joint 3 that accelerates joint 4, per unit
+        L_c4_3_y = _x_6 - Jc_3_t
+        L_c4_3_z = _y_2 - Jc_3_t_4
+        # (rrrrrr-N39) moment about joint 2 that accelerates joint 4, per unit
+        L_c4_2_y = Jc_4_zz*s_3 + L_c4_3_y*c_3 - h_4_r1_x*rrrrrr_joint3_offset_x
+        L_c4_2_z = L_c4_3_z - c_3*h_4_r1_y*rrrrrr_joint3_offset_x
+        L_c4_2_r0_y = s_2*(Jc_4_zz*c_3 - L_c4_3_y*s_3) - L_c4_2_y*c_2_t
+        # (rrrrrr-N27) moment about joint 5 that accelerates joint 5, per unit
+        L_c5_r2_x = -J_5_zz*c_4_t - _x_3*s_4
+        L_c5_r2_y = J_5_zz*s_4 - _x_3*c_4_t
+        L_c5_r5_y = s_2*(_y*c_3 - L_c5_r2_x*s_3) - c_2_t*(L_c5_r2_x*c_3 + _y*s_3)
+        # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
+        end_p1_r0_x = (
+        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xy +
+            R_yx*rrrrrr_base_frame_yy + R_zx*rrrrrr_base_frame_zy) +
+            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xy +
+            R_yy*rrrrrr_base_frame_yy + R_zy*rrrrrr_base_frame_zy) +
+            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xy +
+            R_yz*rrrrrr_base_frame_yy + R_zz*rrrrrr_base_frame_zy)
+        )
+        end_p1_r0_y = (
+        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xz +
+            R_yx*rrrrrr_base_frame_yz + R_zx*rrrrrr_base_frame_zz) +
+            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xz +
+            R_yy*rrrrrr_base_frame_yz + R_zy*rrrrrr_base_frame_zz) +
+            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xz +
+            R_yz*rrrrrr_base_frame_yz + R_zz*rrrrrr_base_frame_zz)
+        )
+        end_p1_r0_z = (
+        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xx +
+            R_yx*rrrrrr_base_frame_yx + R_zx*rrrrrr_base_frame_zx) +
+            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xx +
+            R_yy*rrrrrr_base_frame_yx + R_zy*rrrrrr_base_frame_zx) +
+            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xx +
+            R_yz*rrrrrr_base_frame_yx + R_zz*rrrrrr_base_frame_zx)
+        )
+        end_p1_r1_x = end_p1_r0_y*s_1 - c_1_t*end_p1_r0_x
+        end_p1_r1_y = -c_1_t*end_p1_r0_y - end_p1_r0_x*s_1
+        end_p1_r3_x = end_p1_r0_z*s_2 - c_2_t*end_p1_r1_y
+        end_p1_r3_y = -c_2_t*end_p1_r0_z - end_p1_r1_y*s_2
+        end_p1_r4_x = c_3*end_p1_r3_x + end_p1_r3_y*s_3
+        end_p1_r4_y = c_3*end_p1_r3_y - end_p1_r3_x*s_3
+        end_p1_r6_x = end_p1_r1_x*s_4 - c_4_t*end_p1_r4_y
+        end_p1_r6_y = -c_4_t*end_p1_r1_x - end_p1_r4_y*s_4
+        end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
+        end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
+        # (rrrrrr-V13) force part of reciprocal wrench 1
+        w_1_t_4 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
+        w_1_t_5 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
+        w_1_t_6 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
+        w_1_t_7 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
+        w_1_t_8 = size*w_1_t_4
+        w_1_t_9 = size*w_1_t_6
+        w_1_t_10 = size*w_1_t_5
+        w_1_t_11 = size*w_1_t_7
+        w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
+        w_1_t_13 = c_5_t*end_p1_r6_x*size
+        w_1_t_14 = end_p1_r8_y*size
+        w_1_t_15 = sqrt(size_t + w_1_t_14*w_1_t_14)
+        inv_w_1_t_69 = 1.0/w_1_t_15
+        w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
+        w_1_t_17 = inv_w_1_t_69*w_1_t_14
+        w_1_t_18 = w_1_t_13*w_1_t_17
+        w_1_t_19 = w_1_t_16*w_1_t_18
+        w_1_t_20 = w_1_t_13 - w_1_t_17*w_1_t_18
+        w_1_t_21 = v_1_y*w_1_t_16 - w_1_t_17*w_1_t_9
+        w_1_t_22 = v_1_y - w_1_t_16*w_1_t_21
+        w_1_t_23 = w_1_t_9 + w_1_t_17*w_1_t_21
+        w_1_t_24 = w_1_t_11*w_1_t_17
+        w_1_t_25 = v_2_y*w_1_t_16 - w_1_t_24
+        w_1_t_26 = v_2_y - w_1_t_16*w_1_t_25
+        w_1_t_27 = w_1_t_11 + w_1_t_17*w_1_t_25
+        w_1_t_28 = w_1_t_24 - v_3_y*w_1_t_16
+        w_1_t_29 = v_3_y + w_1_t_16*w_1_t_28
+        w_1_t_30 = w_1_t_11 - w_1_t_17*w_1_t_28
+        w_1_t_31 = sqrt(v_4_z*v_4_z + w_1_t_12*w_1_t_12 + w_1_t_19*w_1_t_19 + w_1_t_20*w_1_t_20)
+        inv_w_1_t_101 = 1.0/w_1_t_31
+        w_1_t_32 = inv_w_1_t_101*w_1_t_19
+        w_1_t_33 = inv_w_1_t_101*v_4_z
+        w_1_t_34 = inv_w_1_t_101*w_1_t_12
+        w_1_t_35 = inv_w_1_t_101*w_1_t_20
+        w_1_t_36 = w_1_t_22*w_1_t_32 + w_1_t_23*w_1_t_35 + w_1_t_34*w_1_t_8 - v_1_z*w_1_t_33
+        w_1_t_37 = w_1_t_32*w_1_t_36 - w_1_t_22
+        w_1_t_38 = v_1_z + w_1_t_33*w_1_t_36
+        w_1_t_39 = w_1_t_34*w_1_t_36 - w_1_t_8
+        w_1_t_40 = w_1_t_35*w_1_t_36 - w_1_t_23
+        w_1_t_41 = w_1_t_10*w_1_t_34
+        w_1_t_42 = w_1_t_41 + w_1_t_26*w_1_t_32 + w_1_t_27*w_1_t_35 - v_2_z*w_1_t_33
+        w_1_t_43 = w_1_t_32*w_1_t_42 - w_1_t_26
+        w_1_t_44 = v_2_z + w_1_t_33*w_1_t_42
+        w_1_t_45 = w_1_t_34*w_1_t_42 - w_1_t_10
+        w_1_t_46 = w_1_t_35*w_1_t_42 - w_1_t_27
+        w_1_t_47 = w_1_t_41 + w_1_t_29*w_1_t_32 + w_1_t_30*w_1_t_35 - v_3_z*w_1_t_33
+        w_1_t_48 = w_1_t_32*w_1_t_47 - w_1_t_29
+        w_1_t_49 = v_3_z + w_1_t_33*w_1_t_47
+        w_1_t_50 = w_1_t_34*w_1_t_47 - w_1_t_10
+        w_1_t_51 = w_1_t_35*w_1_t_47 - w_1_t_30
+        w_1_t_52 = (
+        sqrt(v_1_x*v_1_x + w_1_t_37*w_1_t_37 + w_1_t_38*w_1_t_38 + w_1_t_39*w_1_t_39 +
+            w_1_t_40*w_1_t_40)
+        )
+        inv_w_1_t_150 = 1.0/w_1_t_52
+        w_1_t_53 = inv_w_1_t_150*v_1_x
+        w_1_t_54 = inv_w_1_t_150*w_1_t_37
+        w_1_t_55 = inv_w_1_t_150*w_1_t_38
+        w_1_t_56 = inv_w_1_t_150*w_1_t_39
+        w_1_t_57 = inv_w_1_t_150*w_1_t_40
+        w_1_t_58 = (
+        v_2_x*w_1_t_53 + w_1_t_43*w_1_t_54 + w_1_t_44*w_1_t_55 + w_1_t_45*w_1_t_56 +
+            w_1_t_46*w_1_t_57
+        )
+        w_1_t_59 = v_2_x - w_1_t_53*w_1_t_58
+        w_1_t_60 = w_1_t_43 - w_1_t_54*w_1_t_58
+        w_1_t_61 = w_1_t_44 - w_1_t_55*w_1_t_58
+        w_1_t_62 = w_1_t_45 - w_1_t_56*w_1_t_58
+        w_1_t_63 = w_1_t_46 - w_1_t_57*w_1_t_58
+        w_1_t_64 = (
+        v_3_x*w_1_t_53 + w_1_t_48*w_1_t_54 + w_1_t_49*w_1_t_55 + w_1_t_50*w_1_t_56 +
+            w_1_t_51*w_1_t_57
+        )
+        w_1_t_65 = v_3_x - w_1_t_53*w_1_t_64
+        w_1_t_66 = w_1_t_48 - w_1_t_54*w_1_t_64
+        w_1_t_67 = w_1_t_49 - w_1_t_55*w_1_t_64
+        w_1_t_68 = w_1_t_50 - w_1_t_56*w_1_t_64
+        w_1_t_69 = w_1_t_51 - w_1_t_57*w_1_t_64
+        w_1_t_70 = (
+        sqrt(w_1_t_59*w_1_t_59 + w_1_t_60*w_1_t_60 + w_1_t_61*w_1_t_61 + w_1_t_62*w_1_t_62 +
+            w_1_t_63*w_1_t_63)
+        )
+        inv_w_1_t_194 = 1.0/w_1_t_70
+        w_1_t_71 = inv_w_1_t_194*w_1_t_59
+        w_1_t_72 = inv_w_1_t_194*w_1_t_60
+        w_1_t_73 = inv_w_1_t_194*w_1_t_61
+        w_1_t_74 = inv_w_1_t_194*w_1_t_62
+        w_1_t_75 = inv_w_1_t_194*w_1_t_63
+        w_1_t_76 = (
+        w_1_t_65*w_1_t_71 + w_1_t_66*w_1_t_72 + w_1_t_67*w_1_t_73 + w_1_t_68*w_1_t_74 +
+            w_1_t_69*w_1_t_75
+        )
+        w_1_t_77 = w_1_t_65 - w_1_t_71*w_1_t_76
+        w_1_t_78 = w_1_t_66 - w_1_t_72*w_1_t_76
+        w_1_t_79 = w_1_t_67 - w_1_t_73*w_1_t_76
+        w_1_t_80 = w_1_t_68 - w_1_t_74*w_1_t_76
+        w_1_t_81 = w_1_t_69 - w_1_t_75*w_1_t_76
+        w_1_t_82 = (
+        sqrt(w_1_t_77*w_1_t_77 + w_1_t_78*w_1_t_78 + w_1_t_79*w_1_t_79 + w_1_t_80*w_1_t_80 +
+            w_1_t_81*w_1_t_81)
+        )
+        inv_w_1_t_222 = 1.0/w_1_t_82
+        w_1_t_83 = inv_w_1_t_222*w_1_t_77
+        w_1_t_84 = inv_w_1_t_222*w_1_t_78
+        w_1_t_85 = inv_w_1_t_222*w_1_t_79
+        w_1_t_86 = inv_w_1_t_222*w_1_t_80
+        w_1_t_87 = inv_w_1_t_222*w_1_t_81
+        w_1_t_88 = inv_w_1_t_150*inv_w_1_t_194*w_1_t_58
+        w_1_t_89 = inv_w_1_t_222*(inv_w_1_t_150*w_1_t_64 - w_1_t_76*w_1_t_88)
+        w_1_t_90 = w_1_t_71*w_1_t_88 + w_1_t_83*w_1_t_89 - inv_w_1_t_150*w_1_t_53
+        w_1_t_91 = w_1_t_72*w_1_t_88 + w_1_t_84*w_1_t_89 - inv_w_1_t_150*w_1_t_54
+        w_1_t_92 = w_1_t_73*w_1_t_88 + w_1_t_85*w_1_t_89 - inv_w_1_t_150*w_1_t_55
+        w_1_t_93 = size*(w_1_t_74*w_1_t_88 + w_1_t_86*w_1_t_89 - inv_w_1_t_150*w_1_t_56)
+        w_1_t_94 = size*(w_1_t_75*w_1_t_88 + w_1_t_87*w_1_t_89 - inv_w_1_t_150*w_1_t_57)
+        # (rrrrrr-V16) force part of reciprocal wrench 2
+        w_2_t = inv_w_1_t_194*inv_w_1_t_222*w_1_t_76
+        w_2_t_2 = inv_w_1_t_194*w_1_t_71 - w_1_t_83*w_2_t
+        w_2_t_3 = inv_w_1_t_194*w_1_t_72 - w_1_t_84*w_2_t
+        w_2_t_4 = w_1_t_85*w_2_t - inv_w_1_t_194*w_1_t_73
+        w_2_t_5 = size*(inv_w_1_t_194*w_1_t_74 - w_1_t_86*w_2_t)
+        w_2_t_6 = size*(inv_w_1_t_194*w_1_t_75 - w_1_t_87*w_2_t)
+        # (rrrrrr-V19) force part of reciprocal wrench 3
+        w_3_t = inv_w_1_t_222*w_1_t_83
+        w_3_t_2 = inv_w_1_t_222*w_1_t_84
+        w_3_t_3 = inv_w_1_t_222*w_1_t_85
+        w_3_t_4 = inv_w_1_t_222*size*w_1_t_86
+        w_3_t_5 = inv_w_1_t_222*size*w_1_t_87
+        # (rrrrrr-V22) force part of reciprocal wrench 4
+        w_4_t = inv_w_1_t_101*inv_w_1_t_150*w_1_t_36
+        w_4_t_2 = inv_w_1_t_194*(inv_w_1_t_101*w_1_t_42 - w_1_t_58*w_4_t)
+        w_4_t_3 = inv_w_1_t_222*(w_1_t_64*w_4_t + w_1_t_76*w_4_t_2 - inv_w_1_t_101*w_1_t_47)
+        w_4_t_4 = w_1_t_53*w_4_t + w_1_t_71*w_4_t_2 - w_1_t_83*w_4_t_3
+        w_4_t_5 = inv_w_1_t_101*w_1_t_32 + w_1_t_54*w_4_t + w_1_t_72*w_4_t_2 - w_1_t_84*w_4_t_3
+        w_4_t_6 = inv_w_1_t_101*w_1_t_33 + w_1_t_55*w_4_t + w_1_t_73*w_4_t_2 - w_1_t_85*w_4_t_3
+        w_4_t_7 = (
+        size*(inv_w_1_t_101*w_1_t_34 + w_1_t_56*w_4_t + w_1_t_74*w_4_t_2 - w_1_t_86*w_4_t_3)
+        )
+        w_4_t_8 = (
+        size*(inv_w_1_t_101*w_1_t_35 + w_1_t_57*w_4_t + w_1_t_75*w_4_t_2 - w_1_t_87*w_4_t_3)
+        )
+        # (rrrrrr-V25) force part of reciprocal wrench 5
+        w_5_t = inv_w_1_t_101*inv_w_1_t_69*w_1_t_18
+        w_5_t_2 = inv_w_1_t_150*(inv_w_1_t_69*w_1_t_21 + w_1_t_36*w_5_t)
+        w_5_t_3 = inv_w_1_t_194*(inv_w_1_t_69*w_1_t_25 + w_1_t_42*w_5_t - w_1_t_58*w_5_t_2)
+        w_5_t_4 = (
+        inv_w_1_t_222*(inv_w_1_t_69*w_1_t_28 + w_1_t_64*w_5_t_2 + w_1_t_76*w_5_t_3 -
+            w_1_t_47*w_5_t)
+        )
+        w_5_t_5 = w_1_t_53*w_5_t_2 + w_1_t_71*w_5_t_3 - w_1_t_83*w_5_t_4
+        w_5_t_6 = (
+        inv_w_1_t_69*w_1_t_16 + w_1_t_32*w_5_t + w_1_t_54*w_5_t_2 + w_1_t_72*w_5_t_3 -
+            w_1_t_84*w_5_t_4
+        )
+        w_5_t_7 = w_1_t_33*w_5_t + w_1_t_55*w_5_t_2 + w_1_t_73*w_5_t_3 - w_1_t_85*w_5_t_4
+        w_5_t_8 = size*(w_1_t_34*w_5_t + w_1_t_56*w_5_t_2 + w_1_t_74*w_5_t_3 - w_1_t_86*w_5_t_4)
+        w_5_t_9 = (
+        size*(w_1_t_35*w_5_t + w_1_t_57*w_5_t_2 + w_1_t_75*w_5_t_3 - inv_w_1_t_69*w_1_t_17 -
+            w_1_t_87*w_5_t_4)
+        )
+        # (rrrrrr-N112) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        d_Gamma_1_t = L_c5_r5_y*inv_w_1_t_69
+        d_Gamma_1_t_2 = inv_w_1_t_101*(L_c4_2_r0_y - d_Gamma_1_t*w_1_t_18)
+        d_Gamma_1_t_3 = inv_w_1_t_150*(Jc_1_zz + d_Gamma_1_t_2*w_1_t_36 - d_Gamma_1_t*w_1_t_21)
+        d_Gamma_1_t_4 = (
+        inv_w_1_t_194*(_y_4 + d_Gamma_1_t_2*w_1_t_42 - d_Gamma_1_t*w_1_t_25 -
+            d_Gamma_1_t_3*w_1_t_58)
+        )
+        d_Gamma_1_t_5 = (
+        inv_w_1_t_222*(L_c3_2_r0_y + d_Gamma_1_t*w_1_t_28 + d_Gamma_1_t_2*w_1_t_47 -
+            d_Gamma_1_t_3*w_1_t_64 - d_Gamma_1_t_4*w_1_t_76)
+        )
+        d_Gamma_1_x = (
+        d_Gamma_1_t_3*w_1_t_53 + d_Gamma_1_t_4*w_1_t_71 + d_Gamma_1_t_5*w_1_t_83 + e_1_r6_y*h_5_z
+            + h_5_y*v_1_t
+        )
+        d_Gamma_1_y = (
+        d_Gamma_1_t*w_1_t_16 - d_Gamma_1_t_2*w_1_t_32 - d_Gamma_1_t_3*w_1_t_54 -
+            d_Gamma_1_t_4*w_1_t_72 - d_Gamma_1_t_5*w_1_t_84 - e_1_r6_x*h_5_z - h_5_x*v_1_t
+        )
+        d_Gamma_1_z = (
+        d_Gamma_1_t_2*w_1_t_33 + d_Gamma_1_t_3*w_1_t_55 + d_Gamma_1_t_4*w_1_t_73 +
+            d_Gamma_1_t_5*w_1_t_85 + e_1_r6_x*h_5_y - e_1_r6_y*h_5_x
+        )
+        # (rrrrrr-N102) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        d_Gamma_2_t = h_5_z*v_2_t_2 - h_5_y*s_4
+        d_Gamma_2_t_2 = h_5_z*v_2_t - h_5_x*s_4
+        d_Gamma_2_t_3 = h_5_y*v_2_t - h_5_x*v_2_t_2
+        d_Gamma_2_t_4 = L_c5_r2_y*inv_w_1_t_69
+        d_Gamma_2_t_5 = d_Gamma_2_t_4*w_1_t_18
+        d_Gamma_2_t_6 = inv_w_1_t_101*(L_c4_2_z - d_Gamma_2_t_5)
+        d_Gamma_2_t_7 = d_Gamma_2_t_4*w_1_t_21
+        d_Gamma_2_t_8 = inv_w_1_t_150*(_y_4 + d_Gamma_2_t_6*w_1_t_36 - d_Gamma_2_t_7)
+        d_Gamma_2_t_9 = d_Gamma_2_t_4*w_1_t_25
+        d_Gamma_2_t_10 = (
+        inv_w_1_t_194*(Jc_2_zz + d_Gamma_2_t_6*w_1_t_42 - d_Gamma_2_t_9 - d_Gamma_2_t_8*w_1_t_58)
+        )
+        d_Gamma_2_t_11 = d_Gamma_2_t_4*w_1_t_28
+        d_Gamma_2_t_12 = (
+        inv_w_1_t_222*(L_c3_2_z + d_Gamma_2_t_11 + d_Gamma_2_t_6*w_1_t_47 -
+            d_Gamma_2_t_10*w_1_t_76 - d_Gamma_2_t_8*w_1_t_64)
+        )
+        d_Gamma_2_t_13 = d_Gamma_2_t_4*w_1_t_16
+        d_Gamma_2_x = (
+        d_Gamma_2_t + d_Gamma_2_t_10*w_1_t_71 + d_Gamma_2_t_12*w_1_t_83 + d_Gamma_2_t_8*w_1_t_53
+        )
+        d_Gamma_2_y = (
+        d_Gamma_2_t_13 - d_Gamma_2_t_2 - d_Gamma_2_t_10*w_1_t_72 - d_Gamma_2_t_12*w_1_t_84 -
+            d_Gamma_2_t_6*w_1_t_32 - d_Gamma_2_t_8*w_1_t_54
+        )
+        d_Gamma_2_z = (
+        d_Gamma_2_t_3 + d_Gamma_2_t_10*w_1_t_73 + d_Gamma_2_t_12*w_1_t_85 + d_Gamma_2_t_6*w_1_t_33
+            + d_Gamma_2_t_8*w_1_t_55
+        )
+        # (rrrrrr-N90) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        d_Gamma_3_t = inv_w_1_t_101*(L_c4_3_z - d_Gamma_2_t_5)
+        d_Gamma_3_t_2 = inv_w_1_t_150*(L_c3_2_r0_y + d_Gamma_3_t*w_1_t_36 - d_Gamma_2_t_7)
+        d_Gamma_3_t_3 = (
+        inv_w_1_t_194*(L_c3_2_z + d_Gamma_3_t*w_1_t_42 - d_Gamma_2_t_9 - d_Gamma_3_t_2*w_1_t_58)
+        )
+        d_Gamma_3_t_4 = (
+        inv_w_1_t_222*(Jc_3_zz + d_Gamma_2_t_11 + d_Gamma_3_t*w_1_t_47 - d_Gamma_3_t_2*w_1_t_64 -
+            d_Gamma_3_t_3*w_1_t_76)
+        )
+        d_Gamma_3_x = (
+        d_Gamma_2_t + d_Gamma_3_t_2*w_1_t_53 + d_Gamma_3_t_3*w_1_t_71 + d_Gamma_3_t_4*w_1_t_83
+        )
+        d_Gamma_3_y = (
+        d_Gamma_2_t_13 - d_Gamma_2_t_2 - d_Gamma_3_t*w_1_t_32 - d_Gamma_3_t_2*w_1_t_54 -
+            d_Gamma_3_t_3*w_1_t_72 - d_Gamma_3_t_4*w_1_t_84
+        )
+        d_Gamma_3_z = (
+        d_Gamma_2_t_3 + d_Gamma_3_t*w_1_t_33 + d_Gamma_3_t_2*w_1_t_55 + d_Gamma_3_t_3*w_1_t_73 +
+            d_Gamma_3_t_4*w_1_t_85
+        )
+        # (rrrrrr-N78) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
+        d_Gamma_4_t = _y*inv_w_1_t_69
+        d_Gamma_4_t_2 = inv_w_1_t_101*(Jc_4_zz - d_Gamma_4_t*w_1_t_18)
+        d_Gamma_4_t_3 = (
+        inv_w_1_t_150*(L_c4_2_r0_y + d_Gamma_4_t_2*w_1_t_36 - d_Gamma_4_t*w_1_t_21)
+        )
+        d_Gamma_4_t_4 = (
+        inv_w_1_t_194*(L_c4_2_z + d_Gamma_4_t_2*w_1_t_42 - d_Gamma_4_t*w_1_t_25 -
+            d_Gamma_4_t_3*w_1_t_58)
+        )
+        d_Gamma_4_t_5 = (
+        inv_w_1_t_222*(L_c4_3_z + d_Gamma_4_t*w_1_t_28 + d_Gamma_4_t_2*w_1_t_47 -
+            d_Gamma_4_t_3*w_1_t_64 - d_Gamma_4_t_4*w_1_t_76)
+        )
+        d_Gamma_4_x = (
+        d_Gamma_4_t_3*w_1_t_53 + d_Gamma_4_t_4*w_1_t_71 + d_Gamma_4_t_5*w_1_t_83 - c_5_t*h_5_z
+        )
+        d_Gamma_4_y = (
+        d_Gamma_4_t*w_1_t_16 - d_Gamma_4_t_2*w_1_t_32 - d_Gamma_4_t_3*w_1_t_54 -
+            d_Gamma_4_t_4*w_1_t_72 - d_Gamma_4_t_5*w_1_t_84 - h_5_z*s_5
+        )
+        d_Gamma_4_z = (
+        c_5_t*h_5_x + d_Gamma_4_t_2*w_1_t_33 + d_Gamma_4_t_3*w_1_t_55 + d_Gamma_4_t_4*w_1_t_73 +
+            d_Gamma_4_t_5*w_1_t_85 + h_5_y*s_5
+        )
+        # (rrrrrr-N68) coefficient of the acceleration in: moment about axis 5 of the distal links' inertia and weight
+        d_Gamma_5_t = J_5_zz*inv_w_1_t_69
+        d_Gamma_5_t_2 = inv_w_1_t_101*(_y - d_Gamma_5_t*w_1_t_18)
+        d_Gamma_5_t_3 = inv_w_1_t_150*(L_c5_r5_y + d_Gamma_5_t_2*w_1_t_36 - d_Gamma_5_t*w_1_t_21)
+        d_Gamma_5_t_4 = (
+        inv_w_1_t_194*(L_c5_r2_y + d_Gamma_5_t_2*w_1_t_42 - d_Gamma_5_t*w_1_t_25 -
+            d_Gamma_5_t_3*w_1_t_58)
+        )
+        d_Gamma_5_t_5 = (
+        inv_w_1_t_222*(L_c5_r2_y + d_Gamma_5_t*w_1_t_28 + d_Gamma_5_t_2*w_1_t_47 -
+            d_Gamma_5_t_3*w_1_t_64 - d_Gamma_5_t_4*w_1_t_76)
+        )
+        d_Gamma_5_t_6 = (
+        d_Gamma_5_t_2*w_1_t_33 + d_Gamma_5_t_3*w_1_t_55 + d_Gamma_5_t_4*w_1_t_73 +
+            d_Gamma_5_t_5*w_1_t_85
+        )
+        d_Gamma_5_x = (
+        d_Gamma_5_t_3*w_1_t_53 + d_Gamma_5_t_4*w_1_t_71 + d_Gamma_5_t_5*w_1_t_83 - h_5_y
+        )
+        d_Gamma_5_y = (
+        h_5_x + d_Gamma_5_t*w_1_t_16 - d_Gamma_5_t_2*w_1_t_32 - d_Gamma_5_t_3*w_1_t_54 -
+            d_Gamma_5_t_4*w_1_t_72 - d_Gamma_5_t_5*w_1_t_84
+        )
+        # (rrrrrr-A48) coefficient of the acceleration in: angular acceleration of link 5
+        d_alpha_5_xz = s_5*w_4_t_6 + v_2_t*w_3_t_3 - e_1_r6_x*w_1_t_92 - v_2_t*w_2_t_4
+        d_alpha_5_yz = v_2_t_2*w_3_t_3 - c_5_t*w_4_t_6 - e_1_r6_y*w_1_t_92 - v_2_t_2*w_2_t_4
+        d_alpha_5_zy = w_5_t_6 - s_4*w_2_t_3 - s_4*w_3_t_2 - v_1_t*w_1_t_91
+        d_alpha_5_zz = s_4*w_3_t_3 + v_1_t*w_1_t_92 - w_5_t_7 - s_4*w_2_t_4
+        # (rrrrrr-N25) coefficient of the acceleration in: inertia force of link 5 from its turning about its reference point
+        d_phi_5_t = (
+        h_5_z*(v_2_t_2*w_2_t_2 + v_2_t_2*w_3_t - c_5_t*w_4_t_4 - e_1_r6_y*w_1_t_90) -
+            h_5_y*(s_4*w_2_t_2 + s_4*w_3_t + v_1_t*w_1_t_90 - w_5_t_5)
+        )
+        # (rrrrrr-N132) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        d_c_xx = (
+        d_Gamma_1_x*w_1_t_90 + d_Gamma_5_x*w_5_t_5 - d_phi_5_t - d_Gamma_2_x*w_2_t_2 -
+            d_Gamma_3_x*w_3_t - d_Gamma_4_x*w_4_t_4
+        )
+        d_c_xy = (
+        d_Gamma_1_y*w_1_t_90 + d_Gamma_5_y*w_5_t_5 + d_alpha_5_zy*h_5_y - d_Gamma_2_y*w_2_t_2 -
+            d_Gamma_3_y*w_3_t - d_Gamma_4_y*w_4_t_4 - h_5_z*(c_5_t*w_4_t_5 + e_1_r6_y*w_1_t_91 -
+            v_2_t_2*w_2_t_3 - v_2_t_2*w_3_t_2)
+        )
+        d_c_xz = (
+        d_Gamma_1_z*w_1_t_90 + d_Gamma_5_t_6*w_5_t_5 + d_alpha_5_zz*h_5_y - d_Gamma_2_z*w_2_t_2 -
+            d_Gamma_3_z*w_3_t - d_Gamma_4_z*w_4_t_4 - d_alpha_5_yz*h_5_z
+        )
+        d_c_yy = (
+        d_Gamma_2_y*w_2_t_3 + d_Gamma_3_y*w_3_t_2 + d_Gamma_4_y*w_4_t_5 + h_5_z*(e_1_r6_x*w_1_t_91
+            - s_5*w_4_t_5 - v_2_t*w_2_t_3 - v_2_t*w_3_t_2) - d_Gamma_1_y*w_1_t_91 -
+            d_Gamma_5_y*w_5_t_6 - d_alpha_5_zy*h_5_x
+        )
+        d_c_yz = (
+        d_Gamma_2_z*w_2_t_3 + d_Gamma_3_z*w_3_t_2 + d_Gamma_4_z*w_4_t_5 + d_alpha_5_xz*h_5_z -
+            d_Gamma_1_z*w_1_t_91 - d_Gamma_5_t_6*w_5_t_6 - d_alpha_5_zz*h_5_x
+        )
+        # (rrrrrr-N134) inertia of the leg at the connection point, without the mass gathered there
+        Q_t = d_c_xx - d_c_yy
+        Q_t_2 = 0.5*Q_t
+        Q_t_3 = (
+        d_c_xx + d_Gamma_3_z*w_3_t_3 + d_Gamma_4_z*w_4_t_6 + d_alpha_5_xz*h_5_y -
+            d_Gamma_1_z*w_1_t_92 - d_Gamma_2_z*w_2_t_4 - d_Gamma_5_t_6*w_5_t_7 -
+            d_alpha_5_yz*h_5_x
+        )
+        Q_t_4 = 0.5*Q_t_3
+        Q_t_5 = (
+        axis_x_rrrrrr_axes5_x*d_c_xy + axis_z_rrrrrr_axes5_in_base_x*d_c_yz -
+            Q_t_2*axis_y_rrrrrr_axes5_in_base_x
+        )
+        Q_t_6 = (
+        axis_x_rrrrrr_axes5_y*d_c_xy + axis_z_rrrrrr_axes5_in_base_y*d_c_yz -
+            Q_t_2*axis_y_rrrrrr_axes5_in_base_y
+        )
+        Q_t_7 = (
+        axis_x_rrrrrr_axes5_z*d_c_xy + axis_z_rrrrrr_axes5_in_base_z*d_c_yz -
+            Q_t_2*axis_y_rrrrrr_axes5_in_base_z
+        )
+        Q_t_8 = Q_t_4*axis_z_rrrrrr_axes5_in_base_x - axis_x_rrrrrr_axes5_x*d_c_xz
+        Q_t_9 = Q_t_4*axis_z_rrrrrr_axes5_in_base_y - axis_x_rrrrrr_axes5_y*d_c_xz
+        Q_t_10 = Q_t_4*axis_z_rrrrrr_axes5_in_base_z - axis_x_rrrrrr_axes5_z*d_c_xz
+        Q_t_11 = Q_t_5*axis_y_rrrrrr_axes5_in_base_x - Q_t_8*axis_z_rrrrrr_axes5_in_base_x
+        Q_t_12 = 2.0*Q_t_11 + d_c_xx
+        Q_t_13 = (
+        Q_t_5*axis_y_rrrrrr_axes5_in_base_y + Q_t_6*axis_y_rrrrrr_axes5_in_base_x -
+            Q_t_8*axis_z_rrrrrr_axes5_in_base_y - Q_t_9*axis_z_rrrrrr_axes5_in_base_x
+        )
+        Q_t_14 = (
+        Q_t_5*axis_y_rrrrrr_axes5_in_base_z + Q_t_7*axis_y_rrrrrr_axes5_in_base_x -
+            Q_t_10*axis_z_rrrrrr_axes5_in_base_x - Q_t_8*axis_z_rrrrrr_axes5_in_base_z
+        )
+        Q_t_15 = Q_t_6*axis_y_rrrrrr_axes5_in_base_y - Q_t_9*axis_z_rrrrrr_axes5_in_base_y
+        Q_t_16 = 2.0*Q_t_15 + d_c_xx
+        Q_t_17 = (
+        Q_t_6*axis_y_rrrrrr_axes5_in_base_z + Q_t_7*axis_y_rrrrrr_axes5_in_base_y -
+            Q_t_10*axis_z_rrrrrr_axes5_in_base_y - Q_t_9*axis_z_rrrrrr_axes5_in_base_z
+        )
+        Q_t_18 = Q_t_7*axis_y_rrrrrr_axes5_in_base_z - Q_t_10*axis_z_rrrrrr_axes5_in_base_z
+        Q_t_19 = 2.0*Q_t_18 + d_c_xx
+        # (rrrrrr-V28) moment part of reciprocal wrench 1
+        o_1_t = end_p1_r8_y*w_1_t_93
+        o_1_t_2 = end_p1_r8_y*w_1_t_94
+        o_1_y = end_p1_r6_x*w_1_t_94 - end_p1_r8_x*w_1_t_93
+        # (rrrrrr-V29) moment part of reciprocal wrench 2
+        o_2_t = end_p1_r8_y*w_2_t_5
+        o_2_t_2 = end_p1_r8_y*w_2_t_6
+        o_2_y = end_p1_r8_x*w_2_t_5 - end_p1_r6_x*w_2_t_6
+        # (rrrrrr-V30) moment part of reciprocal wrench 3
+        o_3_t = end_p1_r8_y*w_3_t_4
+        o_3_t_2 = end_p1_r8_y*w_3_t_5
+        o_3_y = end_p1_r8_x*w_3_t_4 - end_p1_r6_x*w_3_t_5
+        # (rrrrrr-V31) moment part of reciprocal wrench 4
+        o_4_t = end_p1_r8_y*w_4_t_7
+        o_4_t_2 = end_p1_r8_y*w_4_t_8
+        o_4_y = end_p1_r8_x*w_4_t_7 - end_p1_r6_x*w_4_t_8
+        # (rrrrrr-V32) moment part of reciprocal wrench 5
+        o_5_t = end_p1_r8_y*w_5_t_8
+        o_5_t_2 = end_p1_r8_y*w_5_t_9
+        o_5_y = end_p1_r6_x*w_5_t_9 - end_p1_r8_x*w_5_t_8
+        # (rrrrrr-N111) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        d0_Gamma_1_x = (
+        Jc_1_zz*o_1_t + L_c5_r5_y*o_5_t - L_c3_2_r0_y*o_3_t - L_c4_2_r0_y*o_4_t - _y_4*o_2_t
+        )
+        d0_Gamma_1_y = (
+        Jc_1_zz*o_1_y + L_c3_2_r0_y*o_3_y + L_c4_2_r0_y*o_4_y + L_c5_r5_y*o_5_y + _y_4*o_2_y
+        )
+        d0_Gamma_1_z = (
+        L_c3_2_r0_y*o_3_t_2 + L_c4_2_r0_y*o_4_t_2 + _y_4*o_2_t_2 - Jc_1_zz*o_1_t_2 -
+            L_c5_r5_y*o_5_t_2
+        )
+        # (rrrrrr-N101) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        d0_Gamma_2_t = L_c5_r2_y*o_5_t
+        d0_Gamma_2_t_2 = L_c5_r2_y*o_5_y
+        d0_Gamma_2_t_3 = L_c5_r2_y*o_5_t_2
+        d0_Gamma_2_x = d0_Gamma_2_t + _y_4*o_1_t - Jc_2_zz*o_2_t - L_c3_2_z*o_3_t - L_c4_2_z*o_4_t
+        d0_Gamma_2_y = (
+        d0_Gamma_2_t_2 + Jc_2_zz*o_2_y + L_c3_2_z*o_3_y + L_c4_2_z*o_4_y + _y_4*o_1_y
+        )
+        d0_Gamma_2_z = (
+        Jc_2_zz*o_2_t_2 + L_c3_2_z*o_3_t_2 + L_c4_2_z*o_4_t_2 - d0_Gamma_2_t_3 - _y_4*o_1_t_2
+        )
+        # (rrrrrr-N89) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        d0_Gamma_3_x = (
+        d0_Gamma_2_t + L_c3_2_r0_y*o_1_t - Jc_3_zz*o_3_t - L_c3_2_z*o_2_t - L_c4_3_z*o_4_t
+        )
+        d0_Gamma_3_y = (
+        d0_Gamma_2_t_2 + Jc_3_zz*o_3_y + L_c3_2_r0_y*o_1_y + L_c3_2_z*o_2_y + L_c4_3_z*o_4_y
+        )
+        d0_Gamma_3_z = (
+        Jc_3_zz*o_3_t_2 + L_c3_2_z*o_2_t_2 + L_c4_3_z*o_4_t_2 - d0_Gamma_2_t_3 -
+            L_c3_2_r0_y*o_1_t_2
+        )
+        # (rrrrrr-N77) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
+        d0_Gamma_4_x = (
+        L_c4_2_r0_y*o_1_t + _y*o_5_t - Jc_4_zz*o_4_t - L_c4_2_z*o_2_t - L_c4_3_z*o_3_t
+        )
+        d0_Gamma_4_y = (
+        Jc_4_zz*o_4_y + L_c4_2_r0_y*o_1_y + L_c4_2_z*o_2_y + L_c4_3_z*o_3_y + _y*o_5_y
+        )
+        d0_Gamma_4_z = (
+        Jc_4_zz*o_4_t_2 + L_c4_2_z*o_2_t_2 + L_c4_3_z*o_3_t_2 - L_c4_2_r0_y*o_1_t_2 - _y*o_5_t_2
+        )
+        # (rrrrrr-N67) coefficient of the acceleration in: moment about axis 5 of the distal links' inertia and weight
+        d0_Gamma_5_x = (
+        J_5_zz*o_5_t + L_c5_r5_y*o_1_t - L_c5_r2_y*o_2_t - L_c5_r2_y*o_3_t - _y*o_4_t
+        )
+        d0_Gamma_5_y = (
+        J_5_zz*o_5_y + L_c5_r2_y*o_2_y + L_c5_r2_y*o_3_y + L_c5_r5_y*o_1_y + _y*o_4_y
+        )
+        d0_Gamma_5_z = (
+        L_c5_r2_y*o_2_t_2 + L_c5_r2_y*o_3_t_2 + _y*o_4_t_2 - J_5_zz*o_5_t_2 - L_c5_r5_y*o_1_t_2
+        )
+        # (rrrrrr-A47) coefficient of the acceleration in: angular acceleration of link 5
+        d0_alpha_5_xx = e_1_r6_x*o_1_t - o_2_t*v_2_t - o_3_t*v_2_t - o_4_t*s_5
+        d0_alpha_5_xy = e_1_r6_x*o_1_y + o_2_y*v_2_t + o_3_y*v_2_t + o_4_y*s_5
+        d0_alpha_5_xz = o_2_t_2*v_2_t + o_3_t_2*v_2_t + o_4_t_2*s_5 - e_1_r6_x*o_1_t_2
+        d0_alpha_5_yx = c_5_t*o_4_t + e_1_r6_y*o_1_t - o_2_t*v_2_t_2 - o_3_t*v_2_t_2
+        d0_alpha_5_yy = e_1_r6_y*o_1_y + o_2_y*v_2_t_2 + o_3_y*v_2_t_2 - c_5_t*o_4_y
+        d0_alpha_5_yz = o_2_t_2*v_2_t_2 + o_3_t_2*v_2_t_2 - c_5_t*o_4_t_2 - e_1_r6_y*o_1_t_2
+        d0_alpha_5_zx = o_5_t - o_1_t*v_1_t - o_2_t*s_4 - o_3_t*s_4
+        d0_alpha_5_zy = o_5_y + o_2_y*s_4 + o_3_y*s_4 - o_1_y*v_1_t
+        d0_alpha_5_zz = o_1_t_2*v_1_t + o_2_t_2*s_4 + o_3_t_2*s_4 - o_5_t_2
+        # (rrrrrr-N131) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        d0_c_xx = (
+        d0_Gamma_1_x*w_1_t_90 + d0_Gamma_5_x*w_5_t_5 + d0_alpha_5_zx*h_5_y - d0_Gamma_2_x*w_2_t_2
+            - d0_Gamma_3_x*w_3_t - d0_Gamma_4_x*w_4_t_4 - d0_alpha_5_yx*h_5_z
+        )
+        d0_c_xy = (
+        d0_Gamma_1_y*w_1_t_90 + d0_Gamma_5_y*w_5_t_5 + d0_alpha_5_zy*h_5_y - d0_Gamma_2_y*w_2_t_2
+            - d0_Gamma_3_y*w_3_t - d0_Gamma_4_y*w_4_t_4 - d0_alpha_5_yy*h_5_z
+        )
+        d0_c_xz = (
+        d0_Gamma_1_z*w_1_t_90 + d0_Gamma_5_z*w_5_t_5 + d0_alpha_5_zz*h_5_y - d0_Gamma_2_z*w_2_t_2
+            - d0_Gamma_3_z*w_3_t - d0_Gamma_4_z*w_4_t_4 - d0_alpha_5_yz*h_5_z
+        )
+        d0_c_yx = (
+        d0_Gamma_2_x*w_2_t_3 + d0_Gamma_3_x*w_3_t_2 + d0_Gamma_4_x*w_4_t_5 + d0_alpha_5_xx*h_5_z -
+            d0_Gamma_1_x*w_1_t_91 - d0_Gamma_5_x*w_5_t_6 - d0_alpha_5_zx*h_5_x
+        )
+        d0_c_yy = (
+        d0_Gamma_2_y*w_2_t_3 + d0_Gamma_3_y*w_3_t_2 + d0_Gamma_4_y*w_4_t_5 + d0_alpha_5_xy*h_5_z -
+            d0_Gamma_1_y*w_1_t_91 - d0_Gamma_5_y*w_5_t_6 - d0_alpha_5_zy*h_5_x
+        )
+        d0_c_yz = (
+        d0_Gamma_2_z*w_2_t_3 + d0_Gamma_3_z*w_3_t_2 + d0_Gamma_4_z*w_4_t_5 + d0_alpha_5_xz*h_5_z -
+            d0_Gamma_1_z*w_1_t_91 - d0_Gamma_5_z*w_5_t_6 - d0_alpha_5_zz*h_5_x
+        )
+        d0_c_zx = (
+        d0_Gamma_1_x*w_1_t_92 + d0_Gamma_2_x*w_2_t_4 + d0_Gamma_5_x*w_5_t_7 + d0_alpha_5_yx*h_5_x
+            - d0_Gamma_3_x*w_3_t_3 - d0_Gamma_4_x*w_4_t_6 - d0_alpha_5_xx*h_5_y
+        )
+        d0_c_zy = (
+        d0_Gamma_1_y*w_1_t_92 + d0_Gamma_2_y*w_2_t_4 + d0_Gamma_5_y*w_5_t_7 + d0_alpha_5_yy*h_5_x
+            - d0_Gamma_3_y*w_3_t_3 - d0_Gamma_4_y*w_4_t_6 - d0_alpha_5_xy*h_5_y
+        )
+        d0_c_zz = (
+        d0_Gamma_1_z*w_1_t_92 + d0_Gamma_2_z*w_2_t_4 + d0_Gamma_5_z*w_5_t_7 + d0_alpha_5_yz*h_5_x
+            - d0_Gamma_3_z*w_3_t_3 - d0_Gamma_4_z*w_4_t_6 - d0_alpha_5_xz*h_5_y
+        )
+        # (M2) coupling block of M
+        q_in_base_x = (
+        R_xx*rrrrrr_platform_point_x + R_xy*rrrrrr_platform_point_y + R_xz*rrrrrr_platform_point_z
+        )
+        q_in_base_y = (
+        R_yx*rrrrrr_platform_point_x + R_yy*rrrrrr_platform_point_y + R_yz*rrrrrr_platform_point_z
+        )
+        q_in_base_z = (
+        R_zx*rrrrrr_platform_point_x + R_zy*rrrrrr_platform_point_y + R_zz*rrrrrr_platform_point_z
+        )
+        M_ta_t = Q_t_13*q_in_base_z
+        M_ta_t_2 = Q_t_14*q_in_base_y
+        M_ta_t_3 = Q_t_12*q_in_base_z - Q_t_14*q_in_base_x
+        M_ta_t_4 = Q_t_12*q_in_base_y - Q_t_13*q_in_base_x
+        M_ta_t_5 = Q_t_16*q_in_base_z - Q_t_17*q_in_base_y
+        M_ta_t_6 = Q_t_17*q_in_base_x
+        M_ta_t_7 = M_ta_t - M_ta_t_6
+        M_ta_t_8 = Q_t_13*q_in_base_y - Q_t_16*q_in_base_x
+        M_ta_t_9 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y
+        M_ta_t_10 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x
+        M_ta_t_11 = M_ta_t_2 - M_ta_t_6
+        # (rrrrrr-N131) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        d0_c_in_base_x = (
+        axis_x_rrrrrr_axes5_x*d0_c_xx + axis_y_rrrrrr_axes5_in_base_x*d0_c_yx +
+            axis_z_rrrrrr_axes5_in_base_x*d0_c_zx
+        )
+        d0_c_in_base_y = (
+        axis_x_rrrrrr_axes5_y*d0_c_xx + axis_y_rrrrrr_axes5_in_base_y*d0_c_yx +
+            axis_z_rrrrrr_axes5_in_base_y*d0_c_zx
+        )
+        d0_c_in_base_z = (
+        axis_x_rrrrrr_axes5_z*d0_c_xx + axis_y_rrrrrr_axes5_in_base_z*d0_c_yx +
+            axis_z_rrrrrr_axes5_in_base_z*d0_c_zx
+        )
+        d0_c_in_base_x_2 = (
+        axis_x_rrrrrr_axes5_x*d0_c_xy + axis_y_rrrrrr_axes5_in_base_x*d0_c_yy +
+            axis_z_rrrrrr_axes5_in_base_x*d0_c_zy
+        )
+        d0_c_in_base_y_2 = (
+        axis_x_rrrrrr_axes5_y*d0_c_xy + axis_y_rrrrrr_axes5_in_base_y*d0_c_yy +
+            axis_z_rrrrrr_axes5_in_base_y*d0_c_zy
+        )
+        d0_c_in_base_z_2 = (
+        axis_x_rrrrrr_axes5_z*d0_c_xy + axis_y_rrrrrr_axes5_in_base_z*d0_c_yy +
+            axis_z_rrrrrr_axes5_in_base_z*d0_c_zy
+        )
+        d0_c_in_base_x_3 = (
+        axis_x_rrrrrr_axes5_x*d0_c_xz + axis_y_rrrrrr_axes5_in_base_x*d0_c_yz +
+            axis_z_rrrrrr_axes5_in_base_x*d0_c_zz
+        )
+        d0_c_in_base_y_3 = (
+        axis_x_rrrrrr_axes5_y*d0_c_xz + axis_y_rrrrrr_axes5_in_base_y*d0_c_yz +
+            axis_z_rrrrrr_axes5_in_base_y*d0_c_zz
+        )
+        d0_c_in_base_z_3 = (
+        axis_x_rrrrrr_axes5_z*d0_c_xz + axis_y_rrrrrr_axes5_in_base_z*d0_c_yz +
+            axis_z_rrrrrr_axes5_in_base_z*d0_c_zz
+        )
+        d0_c_in_base_y_4 = (
+        axis_x_rrrrrr_axes5_y*d0_c_in_base_x + axis_y_rrrrrr_axes5_in_base_y*d0_c_in_base_x_2 +
+            axis_z_rrrrrr_axes5_in_base_y*d0_c_in_base_x_3
+        )
+        d0_c_in_base_z_4 = (
+        axis_x_rrrrrr_axes5_z*d0_c_in_base_x + axis_y_rrrrrr_axes5_in_base_z*d0_c_in_base_x_2 +
+            axis_z_rrrrrr_axes5_in_base_z*d0_c_in_base_x_3
+        )
+        d0_c_in_base_x_4 = (
+        axis_x_rrrrrr_axes5_x*d0_c_in_base_y + axis_y_rrrrrr_axes5_in_base_x*d0_c_in_base_y_2 +
+            axis_z_rrrrrr_axes5_in_base_x*d0_c_in_base_y_3
+        )
+        d0_c_in_base_y_5 = (
+        axis_x_rrrrrr_axes5_y*d0_c_in_base_y + axis_y_rrrrrr_axes5_in_base_y*d0_c_in_base_y_2 +
+            axis_z_rrrrrr_axes5_in_base_y*d0_c_in_base_y_3
+        )
+        d0_c_in_base_z_5 = (
+        axis_x_rrrrrr_axes5_z*d0_c_in_base_y + axis_y_rrrrrr_axes5_in_base_z*d0_c_in_base_y_2 +
+            axis_z_rrrrrr_axes5_in_base_z*d0_c_in_base_y_3
+        )
+        d0_c_in_base_x_5 = (
+        axis_x_rrrrrr_axes5_x*d0_c_in_base_z + axis_y_rrrrrr_axes5_in_base_x*d0_c_in_base_z_2 +
+            axis_z_rrrrrr_axes5_in_base_x*d0_c_in_base_z_3
+        )
+        d0_c_in_base_y_6 = (
+        axis_x_rrrrrr_axes5_y*d0_c_in_base_z + axis_y_rrrrrr_axes5_in_base_y*d0_c_in_base_z_2 +
+            axis_z_rrrrrr_axes5_in_base_y*d0_c_in_base_z_3
+        )
+        d0_c_in_base_z_6 = (
+        axis_x_rrrrrr_axes5_z*d0_c_in_base_z + axis_y_rrrrrr_axes5_in_base_z*d0_c_in_base_z_2 +
+            axis_z_rrrrrr_axes5_in_base_z*d0_c_in_base_z_3
+        )
+        # (M2) coupling block of M
+        M_ta_t_12 = (
+        M_ta_t - M_ta_t_2 - axis_x_rrrrrr_axes5_x*d0_c_in_base_x -
+            axis_y_rrrrrr_axes5_in_base_x*d0_c_in_base_x_2 -
+            axis_z_rrrrrr_axes5_in_base_x*d0_c_in_base_x_3
+        )
+        M_ta_t_13 = M_ta_t_3 + d0_c_in_base_y_4
+        M_ta_t_14 = M_ta_t_4 - d0_c_in_base_z_4
+        M_ta_t_15 = M_ta_t_5 - d0_c_in_base_x_4
+        M_ta_t_16 = M_ta_t_7 + d0_c_in_base_y_5
+        M_ta_t_17 = M_ta_t_8 - d0_c_in_base_z_5
+        M_ta_t_18 = M_ta_t_9 - d0_c_in_base_x_5
+        M_ta_t_19 = M_ta_t_10 + d0_c_in_base_y_6
+        M_ta_t_20 = M_ta_t_11 - d0_c_in_base_z_6
+        # (rrrrrr-N119) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        d0_G_m1_x = (
+        d0_Gamma_2_x*w_2_t_5 + d0_Gamma_3_x*w_3_t_4 + d0_Gamma_4_x*w_4_t_7 - d0_Gamma_1_x*w_1_t_93
+            - d0_Gamma_5_x*w_5_t_8
+        )
+        d0_G_m1_y = (
+        d0_Gamma_2_y*w_2_t_5 + d0_Gamma_3_y*w_3_t_4 + d0_Gamma_4_y*w_4_t_7 - d0_Gamma_1_y*w_1_t_93
+            - d0_Gamma_5_y*w_5_t_8
+        )
+        d0_G_m1_z = (
+        d0_Gamma_2_z*w_2_t_5 + d0_Gamma_3_z*w_3_t_4 + d0_Gamma_4_z*w_4_t_7 - d0_Gamma_1_z*w_1_t_93
+            - d0_Gamma_5_z*w_5_t_8
+        )
+        # (rrrrrr-N123) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        d0_G_m2_x = (
+        d0_Gamma_2_x*w_2_t_6 + d0_Gamma_3_x*w_3_t_5 + d0_Gamma_4_x*w_4_t_8 - d0_Gamma_1_x*w_1_t_94
+            - d0_Gamma_5_x*w_5_t_9
+        )
+        d0_G_m2_y = (
+        d0_Gamma_2_y*w_2_t_6 + d0_Gamma_3_y*w_3_t_5 + d0_Gamma_4_y*w_4_t_8 - d0_Gamma_1_y*w_1_t_94
+            - d0_Gamma_5_y*w_5_t_9
+        )
+        d0_G_m2_z = (
+        d0_Gamma_2_z*w_2_t_6 + d0_Gamma_3_z*w_3_t_5 + d0_Gamma_4_z*w_4_t_8 - d0_Gamma_1_z*w_1_t_94
+            - d0_Gamma_5_z*w_5_t_9
+        )
+        # (rrrrrr-N120) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        d_G_m1_x = (
+        d_Gamma_2_x*w_2_t_5 + d_Gamma_3_x*w_3_t_4 + d_Gamma_4_x*w_4_t_7 - d_Gamma_1_x*w_1_t_93 -
+            d_Gamma_5_x*w_5_t_8
+        )
+        d_G_m1_y = (
+        d_Gamma_2_y*w_2_t_5 + d_Gamma_3_y*w_3_t_4 + d_Gamma_4_y*w_4_t_7 - d_Gamma_1_y*w_1_t_93 -
+            d_Gamma_5_y*w_5_t_8
+        )
+        d_G_m1_z = (
+        d_Gamma_2_z*w_2_t_5 + d_Gamma_3_z*w_3_t_4 + d_Gamma_4_z*w_4_t_7 - d_Gamma_1_z*w_1_t_93 -
+            d_Gamma_5_t_6*w_5_t_8
+        )
+        # (rrrrrr-N124) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        d_G_m2_x = (
+        d_Gamma_2_x*w_2_t_6 + d_Gamma_3_x*w_3_t_5 + d_Gamma_4_x*w_4_t_8 - d_Gamma_1_x*w_1_t_94 -
+            d_Gamma_5_x*w_5_t_9
+        )
+        d_G_m2_y = (
+        d_Gamma_2_y*w_2_t_6 + d_Gamma_3_y*w_3_t_5 + d_Gamma_4_y*w_4_t_8 - d_Gamma_1_y*w_1_t_94 -
+            d_Gamma_5_y*w_5_t_9
+        )
+        d_G_m2_z = (
+        d_Gamma_2_z*w_2_t_6 + d_Gamma_3_z*w_3_t_5 + d_Gamma_4_z*w_4_t_8 - d_Gamma_1_z*w_1_t_94 -
+            d_Gamma_5_t_6*w_5_t_9
+        )
+        # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
+        n_m1_in_base_x = (
+        axis_y_rrrrrr_axes5_in_base_x*end_p1_r8_x - axis_x_rrrrrr_axes5_x*end_p1_r8_y
+        )
+        n_m1_in_base_y = (
+        axis_y_rrrrrr_axes5_in_base_y*end_p1_r8_x - axis_x_rrrrrr_axes5_y*end_p1_r8_y
+        )
+        n_m1_in_base_z = (
+        axis_y_rrrrrr_axes5_in_base_z*end_p1_r8_x - axis_x_rrrrrr_axes5_z*end_p1_r8_y
+        )
+        # (rrrrrr-N120) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        d_G_m1_in_base_x = (
+        axis_x_rrrrrr_axes5_x*d_G_m1_x + axis_y_rrrrrr_axes5_in_base_x*d_G_m1_y +
+            axis_z_rrrrrr_axes5_in_base_x*d_G_m1_z
+        )
+        d_G_m1_in_base_y = (
+        axis_x_rrrrrr_axes5_y*d_G_m1_x + axis_y_rrrrrr_axes5_in_base_y*d_G_m1_y +
+            axis_z_rrrrrr_axes5_in_base_y*d_G_m1_z
+        )
+        d_G_m1_in_base_z = (
+        axis_x_rrrrrr_axes5_z*d_G_m1_x + axis_y_rrrrrr_axes5_in_base_z*d_G_m1_y +
+            axis_z_rrrrrr_axes5_in_base_z*d_G_m1_z
+        )
+        # (rrrrrr-V12) direction 2 of the moment that the platform joint transmits
+        n_m2_in_base_x = (
+        axis_z_rrrrrr_axes5_in_base_x*end_p1_r8_y - axis_y_rrrrrr_axes5_in_base_x*end_p1_r6_x
+        )
+        n_m2_in_base_y = (
+        axis_z_rrrrrr_axes5_in_base_y*end_p1_r8_y - axis_y_rrrrrr_axes5_in_base_y*end_p1_r6_x
+        )
+        n_m2_in_base_z = (
+        axis_z_rrrrrr_axes5_in_base_z*end_p1_r8_y - axis_y_rrrrrr_axes5_in_base_z*end_p1_r6_x
+        )
+        # (rrrrrr-N124) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        d_G_m2_in_base_x = (
+        axis_x_rrrrrr_axes5_x*d_G_m2_x + axis_y_rrrrrr_axes5_in_base_x*d_G_m2_y +
+            axis_z_rrrrrr_axes5_in_base_x*d_G_m2_z
+        )
+        d_G_m2_in_base_y = (
+        axis_x_rrrrrr_axes5_y*d_G_m2_x + axis_y_rrrrrr_axes5_in_base_y*d_G_m2_y +
+            axis_z_rrrrrr_axes5_in_base_y*d_G_m2_z
+        )
+        d_G_m2_in_base_z = (
+        axis_x_rrrrrr_axes5_z*d_G_m2_x + axis_y_rrrrrr_axes5_in_base_z*d_G_m2_y +
+            axis_z_rrrrrr_axes5_in_base_z*d_G_m2_z
+        )
+        # (rrrrrr-N128) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        d_G_m_xx = d_G_m1_in_base_x*n_m1_in_base_x + d_G_m2_in_base_x*n_m2_in_base_x
+        d_G_m_xy = d_G_m1_in_base_y*n_m1_in_base_x + d_G_m2_in_base_y*n_m2_in_base_x
+        d_G_m_xz = d_G_m1_in_base_z*n_m1_in_base_x + d_G_m2_in_base_z*n_m2_in_base_x
+        d_G_m_yx = d_G_m1_in_base_x*n_m1_in_base_y + d_G_m2_in_base_x*n_m2_in_base_y
+        # (rrrrrr-N119) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        d0_G_m1_in_base_y = (
+        axis_x_rrrrrr_axes5_y*d0_G_m1_x + axis_y_rrrrrr_axes5_in_base_y*d0_G_m1_y +
+            axis_z_rrrrrr_axes5_in_base_y*d0_G_m1_z
+        )
+        d0_G_m1_in_base_z = (
+        axis_x_rrrrrr_axes5_z*d0_G_m1_x + axis_y_rrrrrr_axes5_in_base_z*d0_G_m1_y +
+            axis_z_rrrrrr_axes5_in_base_z*d0_G_m1_z
+        )
+        # (rrrrrr-N123) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        d0_G_m2_in_base_y = (
+        axis_x_rrrrrr_axes5_y*d0_G_m2_x + axis_y_rrrrrr_axes5_in_base_y*d0_G_m2_y +
+            axis_z_rrrrrr_axes5_in_base_y*d0_G_m2_z
+        )
+        d0_G_m2_in_base_z = (
+        axis_x_rrrrrr_axes5_z*d0_G_m2_x + axis_y_rrrrrr_axes5_in_base_z*d0_G_m2_y +
+            axis_z_rrrrrr_axes5_in_base_z*d0_G_m2_z
+        )
+        # (M3) rotational block of M
+        M_aa_t = (
+        M_ta_t_5*q_in_base_z + d0_c_in_base_x_5*q_in_base_y + d_G_m_xy*q_in_base_z -
+            M_ta_t_9*q_in_base_y - d0_c_in_base_x_4*q_in_base_z - d_G_m_xz*q_in_base_y -
+            n_m1_in_base_x*(axis_x_rrrrrr_axes5_x*d0_G_m1_x +
+            axis_y_rrrrrr_axes5_in_base_x*d0_G_m1_y + axis_z_rrrrrr_axes5_in_base_x*d0_G_m1_z) -
+            n_m2_in_base_x*(axis_x_rrrrrr_axes5_x*d0_G_m2_x +
+            axis_y_rrrrrr_axes5_in_base_x*d0_G_m2_y + axis_z_rrrrrr_axes5_in_base_x*d0_G_m2_z)
+        )
+        M_aa_t_2 = (
+        M_ta_t_7*q_in_base_z + d0_G_m1_in_base_y*n_m1_in_base_x + d0_G_m2_in_base_y*n_m2_in_base_x
+            + d0_c_in_base_y_5*q_in_base_z + d_G_m_xx*q_in_base_z - M_ta_t_10*q_in_base_y -
+            d0_c_in_base_y_6*q_in_base_y - d_G_m_xz*q_in_base_x
+        )
+        M_aa_t_3 = (
+        M_ta_t_11*q_in_base_y + d0_G_m1_in_base_z*n_m1_in_base_x +
+            d0_G_m2_in_base_z*n_m2_in_base_x + d0_c_in_base_z_5*q_in_base_z + d_G_m_xy*q_in_base_x
+            - M_ta_t_8*q_in_base_z - d0_c_in_base_z_6*q_in_base_y - d_G_m_xx*q_in_base_y
+        )
+        M_aa_t_4 = (
+        M_ta_t_3*q_in_base_z + d0_c_in_base_y_4*q_in_base_z +
+            q_in_base_x*(d_G_m1_in_base_z*n_m1_in_base_y + d_G_m2_in_base_z*n_m2_in_base_y) -
+            M_ta_t_10*q_in_base_x - d0_G_m1_in_base_y*n_m1_in_base_y -
+            d0_G_m2_in_base_y*n_m2_in_base_y - d0_c_in_base_y_6*q_in_base_x - d_G_m_yx*q_in_base_z
+        )
+        M_aa_t_5 = (
+        M_ta_t_4*q_in_base_z + d0_G_m1_in_base_z*n_m1_in_base_y + d0_G_m2_in_base_z*n_m2_in_base_y
+            + d0_c_in_base_z_6*q_in_base_x + q_in_base_x*(d_G_m1_in_base_y*n_m1_in_base_y +
+            d_G_m2_in_base_y*n_m2_in_base_y) - M_ta_t_11*q_in_base_x -
+            d0_c_in_base_z_4*q_in_base_z - d_G_m_yx*q_in_base_y
+        )
+        M_aa_t_6 = (
+        M_ta_t_4*q_in_base_y + d0_c_in_base_z_5*q_in_base_x +
+            q_in_base_y*(d_G_m1_in_base_x*n_m1_in_base_z + d_G_m2_in_base_x*n_m2_in_base_z) -
+            M_ta_t_8*q_in_base_x - d0_G_m1_in_base_z*n_m1_in_base_z -
+            d0_G_m2_in_base_z*n_m2_in_base_z - d0_c_in_base_z_4*q_in_base_y -
+            q_in_base_x*(d_G_m1_in_base_y*n_m1_in_base_z + d_G_m2_in_base_y*n_m2_in_base_z)
+        )
+        ok = (
+        ok & m.every((abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE * size) &
+            (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
+            (abs(w_1_t_82) > _TOLERANCE * size))
+        )
+        sums = m.added(sums, leg, (
+        Q_t_12, Q_t_13, Q_t_14, Q_t_16, Q_t_17, Q_t_19, M_ta_t_12, M_ta_t_13, M_ta_t_14,
+            M_ta_t_15, M_ta_t_16, M_ta_t_17, M_ta_t_18, M_ta_t_19, M_ta_t_20, M_aa_t,
+            M_aa_t_2, M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6,
+        ))
     (
     total_rrrrrr_xx, total_rrrrrr_xy, total_rrrrrr_xz, total_rrrrrr_yy, total_rrrrrr_yz,
         total_rrrrrr_zz, total_rrrrrr_xx_2, total_rrrrrr_xy_2, total_rrrrrr_xz_2, total_rrrrrr_yx,
         total_rrrrrr_yy_2, total_rrrrrr_yz_2, total_rrrrrr_zx, total_rrrrrr_zy, total_rrrrrr_zz_2,
         total_rrrrrr_xx_3, total_rrrrrr_xy_3, total_rrrrrr_xz_3, total_rrrrrr_yy_3,
         total_rrrrrr_yz_3, total_rrrrrr_zz_3,
-    ) = t
+    ) = sums
     # (M1) translational block of M
     M_tt_xx = m_star - total_rrrrrr_xx
     M_tt_yy = m_star - total_rrrrrr_yy
@@ -3872,23 +4437,55 @@ def _M_after(c, s, t, f):
     M_aa_yy = J_star_t_12 - total_rrrrrr_yy_3
     M_aa_yz = J_star_t_13 + total_rrrrrr_yz_3
     M_aa_zz = J_star_t_15 - total_rrrrrr_zz_3
-    ok = True
-    return (
-    ok, (M_tt_xx, -total_rrrrrr_xy, -total_rrrrrr_xy, -total_rrrrrr_xz, -total_rrrrrr_xz, M_tt_yy,
-        -total_rrrrrr_yz, -total_rrrrrr_yz, M_tt_zz, total_rrrrrr_xx_2, total_rrrrrr_xx_2,
-        M_ta_xy, M_ta_xy, M_ta_xz, M_ta_xz, M_ta_yx, M_ta_yx, -total_rrrrrr_yy_2,
-        -total_rrrrrr_yy_2, M_ta_yz, M_ta_yz, M_ta_zx, M_ta_zx, M_ta_zy, M_ta_zy,
-        total_rrrrrr_zz_2, total_rrrrrr_zz_2, M_aa_xx, M_aa_xy, M_aa_xy, M_aa_xz, M_aa_xz,
-        M_aa_yy, M_aa_yz, M_aa_yz, M_aa_zz,),
-    )
+    out_M[0] = M_tt_xx
+    out_M[1] = -total_rrrrrr_xy
+    out_M[6] = -total_rrrrrr_xy
+    out_M[2] = -total_rrrrrr_xz
+    out_M[12] = -total_rrrrrr_xz
+    out_M[7] = M_tt_yy
+    out_M[8] = -total_rrrrrr_yz
+    out_M[13] = -total_rrrrrr_yz
+    out_M[14] = M_tt_zz
+    out_M[3] = total_rrrrrr_xx_2
+    out_M[18] = total_rrrrrr_xx_2
+    out_M[4] = M_ta_xy
+    out_M[24] = M_ta_xy
+    out_M[5] = M_ta_xz
+    out_M[30] = M_ta_xz
+    out_M[9] = M_ta_yx
+    out_M[19] = M_ta_yx
+    out_M[10] = -total_rrrrrr_yy_2
+    out_M[25] = -total_rrrrrr_yy_2
+    out_M[11] = M_ta_yz
+    out_M[31] = M_ta_yz
+    out_M[15] = M_ta_zx
+    out_M[20] = M_ta_zx
+    out_M[16] = M_ta_zy
+    out_M[26] = M_ta_zy
+    out_M[17] = total_rrrrrr_zz_2
+    out_M[32] = total_rrrrrr_zz_2
+    out_M[21] = M_aa_xx
+    out_M[22] = M_aa_xy
+    out_M[27] = M_aa_xy
+    out_M[23] = M_aa_xz
+    out_M[33] = M_aa_xz
+    out_M[28] = M_aa_yy
+    out_M[29] = M_aa_yz
+    out_M[34] = M_aa_yz
+    out_M[35] = M_aa_zz
+    return ok, (out_M,)
 
 
 # Z: 5337 mul, 3972 add, 30 div, 30 sqrt, 60 trig
-def _Z_before(c, X, V, q, f):
+def _run_Z(m, X, V, q):
+    sqrt = m.sqrt
+    sin = m.sin
+    cos = m.cos
+    shared, legs = m.constants("Z")
     (
     J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3,
         gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
-    ) = c
+    ) = shared
     X_3 = X[3]
     X_4 = X[4]
     X_5 = X[5]
@@ -3899,6 +4496,11 @@ def _Z_before(c, X, V, q, f):
     V_3 = V[3]
     V_4 = V[4]
     V_5 = V[5]
+    q_1 = q[1]
+    q_2 = q[2]
+    q_3 = q[3]
+    q_4 = q[4]
+    q_5 = q[5]
     # X: named entries
     quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6
     quaternion_scale = 2.0/quaternion_norm2
@@ -3930,6 +4532,9 @@ def _Z_before(c, X, V, q, f):
     omega_x = V_3
     omega_y = V_4
     omega_z = V_5
+    ok = True
+    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    out_Z = m.zeros(6)
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -3957,840 +4562,852 @@ def _Z_before(c, X, V, q, f):
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
-    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    return (
-    ok, (R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y, t_dot_z, omega_x,
-        omega_y, omega_z, Z_p_x, Z_p_y, Z_p_z, Z_q_in_base_x, Z_q_in_base_y, Z_q_in_base_z,), (),
-    )
-
-
-def _Z_rrrrrr(c, k, x, s, f):
-    sqrt = f.sqrt
-    sin = f.sin
-    cos = f.cos
-    (
-    J_1_xx, J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, J_4_xy, J_4_xz, J_4_yz, J_5_xy,
-        J_5_xz, J_5_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz,
-        Sigma_4_xx, Sigma_4_yy, Sigma_4_zz, Sigma_5_xx, Sigma_5_yy, Sigma_5_zz, g_r0_x, g_r0_y,
-        g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, h_4_x, h_4_y, h_4_z,
-        h_5_x, h_5_y, h_5_z, rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz,
-        rrrrrr_base_frame_yx, rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx,
-        rrrrrr_base_frame_zy, rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x,
-        rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x, rrrrrr_link3_mass,
-        rrrrrr_link4_mass, rrrrrr_platform_joint_axis_platform_x,
-        rrrrrr_platform_joint_axis_platform_y, rrrrrr_platform_joint_axis_platform_z,
-        rrrrrr_platform_joint_offset_x, rrrrrr_platform_point_x, rrrrrr_platform_point_y,
-        rrrrrr_platform_point_z, size, size_t,
-    ) = k
-    q_1, q_2, q_3, q_4, q_5 = x
-    (
-    R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y, t_dot_z, omega_x,
-        omega_y, omega_z,
-    ) = s
-    # (rrrrrr-K10) cosine of the angle of joint 5 from its reference direction
-    c_5_t = sin(q_5)
-    # (rrrrrr-K11) sine of the angle of joint 5 from its reference direction
-    s_5 = cos(q_5)
-    # (rrrrrr-V2) from joint 4 to the connection point, along the links
-    r_4_t = c_5_t*rrrrrr_platform_joint_offset_x
-    r_4_z = rrrrrr_joint5_offset_x + rrrrrr_platform_joint_offset_x*s_5
-    # (rrrrrr-K8) cosine of the angle of joint 4 from its reference direction
-    c_4_t = sin(q_4)
-    # (rrrrrr-K9) sine of the angle of joint 4 from its reference direction
-    s_4 = cos(q_4)
-    # (rrrrrr-V2) from joint 4 to the connection point, along the links
-    r_4_t_2 = r_4_t*s_4
-    r_4_t_3 = c_4_t*r_4_t
-    # (rrrrrr-V3) from joint 3 to the connection point, along the links
-    r_3_x = r_4_z + rrrrrr_joint4_offset_x
-    # (rrrrrr-K6) cosine of the angle of joint 3 from its reference direction
-    c_3 = cos(q_3)
-    # (rrrrrr-K7) sine of the angle of joint 3 from its reference direction
-    s_3 = sin(q_3)
-    # (rrrrrr-V3) from joint 3 to the connection point, along the links
-    r_3_r0_y = c_3*r_4_t_2 + r_3_x*s_3
-    # (rrrrrr-V4) from joint 2 to the connection point, along the links
-    r_2_x = rrrrrr_joint3_offset_x + c_3*r_3_x - r_4_t_2*s_3
-    # (rrrrrr-K4) cosine of the angle of joint 2 from its reference direction
-    c_2_t = sin(q_2)
-    # (rrrrrr-K5) sine of the angle of joint 2 from its reference direction
-    s_2 = cos(q_2)
-    # (rrrrrr-V4) from joint 2 to the connection point, along the links
-    r_2_r0_x = -c_2_t*r_2_x - r_3_r0_y*s_2
-    # (rrrrrr-V5) from joint 1 to the connection point, along the links
-    r_1_z = rrrrrr_joint2_offset_x + r_2_x*s_2 - c_2_t*r_3_r0_y
-    # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-    e_1_r2_x = c_3*s_2 - c_2_t*s_3
-    e_1_r2_y = -c_2_t*c_3 - s_2*s_3
-    v_1_t = c_4_t*e_1_r2_y
-    v_1_t_2 = e_1_r2_y*s_4
-    e_1_r6_x = c_5_t*v_1_t_2 + e_1_r2_x*s_5
-    e_1_r6_y = s_5*v_1_t_2 - c_5_t*e_1_r2_x
-    # (rrrrrr-V5) from joint 1 to the connection point, along the links
-    r_1_r1_x = r_1_z*s_2 - c_2_t*r_2_r0_x
-    r_1_r1_y = -c_2_t*r_1_z - r_2_r0_x*s_2
-    r_1_r2_x = c_3*r_1_r1_x + r_1_r1_y*s_3
-    r_1_r2_y = c_3*r_1_r1_y - r_1_r1_x*s_3
-    r_1_t = r_4_t_3*s_4
-    r_1_r4_x = r_1_t - c_4_t*r_1_r2_y
-    r_1_t_2 = c_4_t*r_4_t_3
-    r_1_r4_y = -r_1_t_2 - r_1_r2_y*s_4
-    r_1_r6_x = r_1_r2_x*s_5 - c_5_t*r_1_r4_y
-    r_1_r6_y = -c_5_t*r_1_r2_x - r_1_r4_y*s_5
-    # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-    v_1_x = e_1_r6_y*r_1_r4_x + r_1_r6_y*v_1_t
-    v_1_y = -e_1_r6_x*r_1_r4_x - r_1_r6_x*v_1_t
-    v_1_z = e_1_r6_x*r_1_r6_y - e_1_r6_y*r_1_r6_x
-    # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-    v_2_t = c_4_t*c_5_t
-    v_2_t_2 = c_4_t*s_5
-    # (rrrrrr-V4) from joint 2 to the connection point, along the links
-    r_2_r0_x_2 = c_3*r_2_x + r_3_r0_y*s_3
-    r_2_r0_y = c_3*r_3_r0_y - r_2_x*s_3
-    r_2_r2_x = r_1_t - c_4_t*r_2_r0_y
-    r_2_r2_y = -r_1_t_2 - r_2_r0_y*s_4
-    r_2_r4_x = r_2_r0_x_2*s_5 - c_5_t*r_2_r2_y
-    r_2_r4_y = -c_5_t*r_2_r0_x_2 - r_2_r2_y*s_5
-    # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-    v_2_x = r_2_r2_x*v_2_t_2 - r_2_r4_y*s_4
-    v_2_y = r_2_r4_x*s_4 - r_2_r2_x*v_2_t
-    v_2_z = r_2_r4_y*v_2_t - r_2_r4_x*v_2_t_2
-    # (rrrrrr-V3) from joint 3 to the connection point, along the links
-    r_3_r1_x = r_1_t - c_4_t*r_4_t_2
-    r_3_r1_y = -r_1_t_2 - r_4_t_2*s_4
-    r_3_r3_x = r_3_x*s_5 - c_5_t*r_3_r1_y
-    r_3_r3_y = -c_5_t*r_3_x - r_3_r1_y*s_5
-    # (rrrrrr-V8) velocity of the connection point per rate of joint 3
-    v_3_x = r_3_r1_x*v_2_t_2 - r_3_r3_y*s_4
-    v_3_y = r_3_r3_x*s_4 - r_3_r1_x*v_2_t
-    v_3_z = r_3_r3_y*v_2_t - r_3_r3_x*v_2_t_2
-    # (rrrrrr-V9) velocity of the connection point per rate of joint 4
-    v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t = c_4_t*s_3
-    w_1_t_2 = c_3*c_4_t
-    axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_2 - c_2_t*w_1_t
-    axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_2 + s_2*w_1_t
-    # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
-    c_1_t = sin(q_1)
-    # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
-    s_1 = cos(q_1)
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    axis_z_rrrrrr_axes5_r7_x = -axis_z_rrrrrr_axes5_r5_x*s_1 - c_1_t*s_4
-    axis_z_rrrrrr_axes5_r7_y = s_1*s_4 - axis_z_rrrrrr_axes5_r5_x*c_1_t
-    axis_z_rrrrrr_axes5_in_base_x = (
-    axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx + axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy
-        + axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
-    )
-    axis_z_rrrrrr_axes5_in_base_y = (
-    axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx + axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy
-        + axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
-    )
-    axis_z_rrrrrr_axes5_in_base_z = (
-    axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx + axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy
-        + axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
-    )
-    w_1_t_3 = s_4*s_5
-    axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_3
-    axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_3 - c_5_t*s_3
-    axis_y_rrrrrr_axes5_r5_x = -axis_y_rrrrrr_axes5_r4_x*c_2_t - axis_y_rrrrrr_axes5_r4_y*s_2
-    axis_y_rrrrrr_axes5_r5_y = axis_y_rrrrrr_axes5_r4_x*s_2 - axis_y_rrrrrr_axes5_r4_y*c_2_t
-    axis_y_rrrrrr_axes5_r7_x = -axis_y_rrrrrr_axes5_r5_x*s_1 - c_1_t*v_2_t_2
-    axis_y_rrrrrr_axes5_r7_y = s_1*v_2_t_2 - axis_y_rrrrrr_axes5_r5_x*c_1_t
-    axis_y_rrrrrr_axes5_in_base_x = (
-    axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx + axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy
-        + axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
-    )
-    axis_y_rrrrrr_axes5_in_base_y = (
-    axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx + axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy
-        + axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
-    )
-    axis_y_rrrrrr_axes5_in_base_z = (
-    axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx + axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy
-        + axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
-    )
-    axis_x_rrrrrr_axes5_x = (
-    axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_z -
-        axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_y
-    )
-    axis_x_rrrrrr_axes5_y = (
-    axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_x -
-        axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_z
-    )
-    axis_x_rrrrrr_axes5_z = (
-    axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_y -
-        axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_x
-    )
-    # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
-    end_p1_r0_x = (
-    rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xy + R_yx*rrrrrr_base_frame_yy +
-        R_zx*rrrrrr_base_frame_zy) +
-        rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xy +
-        R_yy*rrrrrr_base_frame_yy + R_zy*rrrrrr_base_frame_zy) +
-        rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xy +
-        R_yz*rrrrrr_base_frame_yy + R_zz*rrrrrr_base_frame_zy)
-    )
-    end_p1_r0_y = (
-    rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xz + R_yx*rrrrrr_base_frame_yz +
-        R_zx*rrrrrr_base_frame_zz) +
-        rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xz +
-        R_yy*rrrrrr_base_frame_yz + R_zy*rrrrrr_base_frame_zz) +
-        rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xz +
-        R_yz*rrrrrr_base_frame_yz + R_zz*rrrrrr_base_frame_zz)
-    )
-    end_p1_r0_z = (
-    rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xx + R_yx*rrrrrr_base_frame_yx +
-        R_zx*rrrrrr_base_frame_zx) +
-        rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xx +
-        R_yy*rrrrrr_base_frame_yx + R_zy*rrrrrr_base_frame_zx) +
-        rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xx +
-        R_yz*rrrrrr_base_frame_yx + R_zz*rrrrrr_base_frame_zx)
-    )
-    end_p1_r1_x = end_p1_r0_y*s_1 - c_1_t*end_p1_r0_x
-    end_p1_r1_y = -c_1_t*end_p1_r0_y - end_p1_r0_x*s_1
-    end_p1_r3_x = end_p1_r0_z*s_2 - c_2_t*end_p1_r1_y
-    end_p1_r3_y = -c_2_t*end_p1_r0_z - end_p1_r1_y*s_2
-    end_p1_r4_x = c_3*end_p1_r3_x + end_p1_r3_y*s_3
-    end_p1_r4_y = c_3*end_p1_r3_y - end_p1_r3_x*s_3
-    end_p1_r6_x = end_p1_r1_x*s_4 - c_4_t*end_p1_r4_y
-    end_p1_r6_y = -c_4_t*end_p1_r1_x - end_p1_r4_y*s_4
-    end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
-    end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_4 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
-    w_1_t_5 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
-    w_1_t_6 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
-    w_1_t_7 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
-    w_1_t_8 = size*w_1_t_4
-    w_1_t_9 = size*w_1_t_6
-    w_1_t_10 = size*w_1_t_5
-    w_1_t_11 = size*w_1_t_7
-    w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
-    w_1_t_13 = c_5_t*end_p1_r6_x*size
-    w_1_t_14 = end_p1_r8_y*size
-    w_1_t_15 = sqrt(size_t + w_1_t_14*w_1_t_14)
-    inv_w_1_t_69 = 1.0/w_1_t_15
-    w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
-    w_1_t_17 = inv_w_1_t_69*w_1_t_14
-    w_1_t_18 = w_1_t_13*w_1_t_17
-    w_1_t_19 = w_1_t_16*w_1_t_18
-    w_1_t_20 = w_1_t_13 - w_1_t_17*w_1_t_18
-    w_1_t_21 = v_1_y*w_1_t_16 - w_1_t_17*w_1_t_9
-    w_1_t_22 = v_1_y - w_1_t_16*w_1_t_21
-    w_1_t_23 = w_1_t_9 + w_1_t_17*w_1_t_21
-    w_1_t_24 = w_1_t_11*w_1_t_17
-    w_1_t_25 = v_2_y*w_1_t_16 - w_1_t_24
-    w_1_t_26 = v_2_y - w_1_t_16*w_1_t_25
-    w_1_t_27 = w_1_t_11 + w_1_t_17*w_1_t_25
-    w_1_t_28 = w_1_t_24 - v_3_y*w_1_t_16
-    w_1_t_29 = v_3_y + w_1_t_16*w_1_t_28
-    w_1_t_30 = w_1_t_11 - w_1_t_17*w_1_t_28
-    w_1_t_31 = sqrt(v_4_z*v_4_z + w_1_t_12*w_1_t_12 + w_1_t_19*w_1_t_19 + w_1_t_20*w_1_t_20)
-    inv_w_1_t_101 = 1.0/w_1_t_31
-    w_1_t_32 = inv_w_1_t_101*w_1_t_19
-    w_1_t_33 = inv_w_1_t_101*v_4_z
-    w_1_t_34 = inv_w_1_t_101*w_1_t_12
-    w_1_t_35 = inv_w_1_t_101*w_1_t_20
-    w_1_t_36 = w_1_t_22*w_1_t_32 + w_1_t_23*w_1_t_35 + w_1_t_34*w_1_t_8 - v_1_z*w_1_t_33
-    w_1_t_37 = w_1_t_32*w_1_t_36 - w_1_t_22
-    w_1_t_38 = v_1_z + w_1_t_33*w_1_t_36
-    w_1_t_39 = w_1_t_34*w_1_t_36 - w_1_t_8
-    w_1_t_40 = w_1_t_35*w_1_t_36 - w_1_t_23
-    w_1_t_41 = w_1_t_10*w_1_t_34
-    w_1_t_42 = w_1_t_41 + w_1_t_26*w_1_t_32 + w_1_t_27*w_1_t_35 - v_2_z*w_1_t_33
-    w_1_t_43 = w_1_t_32*w_1_t_42 - w_1_t_26
-    w_1_t_44 = v_2_z + w_1_t_33*w_1_t_42
-    w_1_t_45 = w_1_t_34*w_1_t_42 - w_1_t_10
-    w_1_t_46 = w_1_t_35*w_1_t_42 - w_1_t_27
-    w_1_t_47 = w_1_t_41 + w_1_t_29*w_1_t_32 + w_1_t_30*w_1_t_35 - v_3_z*w_1_t_33
-    w_1_t_48 = w_1_t_32*w_1_t_47 - w_1_t_29
-    w_1_t_49 = v_3_z + w_1_t_33*w_1_t_47
-    w_1_t_50 = w_1_t_34*w_1_t_47 - w_1_t_10
-    w_1_t_51 = w_1_t_35*w_1_t_47 - w_1_t_30
-    w_1_t_52 = (
-    sqrt(v_1_x*v_1_x + w_1_t_37*w_1_t_37 + w_1_t_38*w_1_t_38 + w_1_t_39*w_1_t_39 +
-        w_1_t_40*w_1_t_40)
-    )
-    inv_w_1_t_150 = 1.0/w_1_t_52
-    w_1_t_53 = inv_w_1_t_150*v_1_x
-    w_1_t_54 = inv_w_1_t_150*w_1_t_37
-    w_1_t_55 = inv_w_1_t_150*w_1_t_38
-    w_1_t_56 = inv_w_1_t_150*w_1_t_39
-    w_1_t_57 = inv_w_1_t_150*w_1_t_40
-    w_1_t_58 = (
-    v_2_x*w_1_t_53 + w_1_t_43*w_1_t_54 + w_1_t_44*w_1_t_55 + w_1_t_45*w_1_t_56 + w_1_t_46*w_1_t_57
-    )
-    w_1_t_59 = v_2_x - w_1_t_53*w_1_t_58
-    w_1_t_60 = w_1_t_43 - w_1_t_54*w_1_t_58
-    w_1_t_61 = w_1_t_44 - w_1_t_55*w_1_t_58
-    w_1_t_62 = w_1_t_45 - w_1_t_56*w_1_t_58
-    w_1_t_63 = w_1_t_46 - w_1_t_57*w_1_t_58
-    w_1_t_64 = (
-    v_3_x*w_1_t_53 + w_1_t_48*w_1_t_54 + w_1_t_49*w_1_t_55 + w_1_t_50*w_1_t_56 + w_1_t_51*w_1_t_57
-    )
-    w_1_t_65 = v_3_x - w_1_t_53*w_1_t_64
-    w_1_t_66 = w_1_t_48 - w_1_t_54*w_1_t_64
-    w_1_t_67 = w_1_t_49 - w_1_t_55*w_1_t_64
-    w_1_t_68 = w_1_t_50 - w_1_t_56*w_1_t_64
-    w_1_t_69 = w_1_t_51 - w_1_t_57*w_1_t_64
-    w_1_t_70 = (
-    sqrt(w_1_t_59*w_1_t_59 + w_1_t_60*w_1_t_60 + w_1_t_61*w_1_t_61 + w_1_t_62*w_1_t_62 +
-        w_1_t_63*w_1_t_63)
-    )
-    inv_w_1_t_194 = 1.0/w_1_t_70
-    w_1_t_71 = inv_w_1_t_194*w_1_t_59
-    w_1_t_72 = inv_w_1_t_194*w_1_t_60
-    w_1_t_73 = inv_w_1_t_194*w_1_t_61
-    w_1_t_74 = inv_w_1_t_194*w_1_t_62
-    w_1_t_75 = inv_w_1_t_194*w_1_t_63
-    w_1_t_76 = (
-    w_1_t_65*w_1_t_71 + w_1_t_66*w_1_t_72 + w_1_t_67*w_1_t_73 + w_1_t_68*w_1_t_74 +
-        w_1_t_69*w_1_t_75
-    )
-    w_1_t_77 = w_1_t_65 - w_1_t_71*w_1_t_76
-    w_1_t_78 = w_1_t_66 - w_1_t_72*w_1_t_76
-    w_1_t_79 = w_1_t_67 - w_1_t_73*w_1_t_76
-    w_1_t_80 = w_1_t_68 - w_1_t_74*w_1_t_76
-    w_1_t_81 = w_1_t_69 - w_1_t_75*w_1_t_76
-    w_1_t_82 = (
-    sqrt(w_1_t_77*w_1_t_77 + w_1_t_78*w_1_t_78 + w_1_t_79*w_1_t_79 + w_1_t_80*w_1_t_80 +
-        w_1_t_81*w_1_t_81)
-    )
-    inv_w_1_t_222 = 1.0/w_1_t_82
-    w_1_t_83 = inv_w_1_t_222*w_1_t_77
-    w_1_t_84 = inv_w_1_t_222*w_1_t_78
-    w_1_t_85 = inv_w_1_t_222*w_1_t_79
-    w_1_t_86 = inv_w_1_t_222*w_1_t_80
-    w_1_t_87 = inv_w_1_t_222*w_1_t_81
-    # (M2) coupling block of M
-    q_in_base_x = (
-    R_xx*rrrrrr_platform_point_x + R_xy*rrrrrr_platform_point_y + R_xz*rrrrrr_platform_point_z
-    )
-    q_in_base_y = (
-    R_yx*rrrrrr_platform_point_x + R_yy*rrrrrr_platform_point_y + R_yz*rrrrrr_platform_point_z
-    )
-    q_in_base_z = (
-    R_zx*rrrrrr_platform_point_x + R_zy*rrrrrr_platform_point_y + R_zz*rrrrrr_platform_point_z
-    )
-    # (rrrrrr-V1) velocity of the connection point
-    S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-    S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-    S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-    S_dot_x = S_dot_t + t_dot_x
-    S_dot_y = S_dot_t_2 + t_dot_y
-    S_dot_z = S_dot_t_3 + t_dot_z
-    # (rrrrrr-V33) rate at which the joints turn along moment direction 1
-    eta_1 = (
-    omega_x*(axis_y_rrrrrr_axes5_in_base_x*end_p1_r8_x - axis_x_rrrrrr_axes5_x*end_p1_r8_y) +
-        omega_y*(axis_y_rrrrrr_axes5_in_base_y*end_p1_r8_x - axis_x_rrrrrr_axes5_y*end_p1_r8_y) +
-        omega_z*(axis_y_rrrrrr_axes5_in_base_z*end_p1_r8_x - axis_x_rrrrrr_axes5_z*end_p1_r8_y)
-    )
-    # (rrrrrr-V34) rate at which the joints turn along moment direction 2
-    eta_2 = (
-    omega_x*(axis_z_rrrrrr_axes5_in_base_x*end_p1_r8_y -
-        axis_y_rrrrrr_axes5_in_base_x*end_p1_r6_x) +
-        omega_y*(axis_z_rrrrrr_axes5_in_base_y*end_p1_r8_y -
-        axis_y_rrrrrr_axes5_in_base_y*end_p1_r6_x) +
-        omega_z*(axis_z_rrrrrr_axes5_in_base_z*end_p1_r8_y -
-        axis_y_rrrrrr_axes5_in_base_z*end_p1_r6_x)
-    )
-    # (rrrrrr-V1) velocity of the connection point
-    S_dot_tip_x = (
-    S_dot_x*axis_x_rrrrrr_axes5_x + S_dot_y*axis_x_rrrrrr_axes5_y + S_dot_z*axis_x_rrrrrr_axes5_z
-    )
-    S_dot_tip_y = (
-    S_dot_x*axis_y_rrrrrr_axes5_in_base_x + S_dot_y*axis_y_rrrrrr_axes5_in_base_y +
-        S_dot_z*axis_y_rrrrrr_axes5_in_base_z
-    )
-    S_dot_tip_z = (
-    S_dot_x*axis_z_rrrrrr_axes5_in_base_x + S_dot_y*axis_z_rrrrrr_axes5_in_base_y +
-        S_dot_z*axis_z_rrrrrr_axes5_in_base_z
-    )
-    # (rrrrrr-V35) rate of joint 1
-    qd_1_t = eta_1*size
-    qd_1_t_2 = eta_2*size
-    qd_1_t_3 = (
-    inv_w_1_t_222*(S_dot_tip_x*w_1_t_83 + S_dot_tip_z*w_1_t_85 + qd_1_t*w_1_t_86 +
-        qd_1_t_2*w_1_t_87 - S_dot_tip_y*w_1_t_84)
-    )
-    qd_1_t_4 = (
-    inv_w_1_t_194*(S_dot_tip_x*w_1_t_71 + S_dot_tip_z*w_1_t_73 + qd_1_t*w_1_t_74 +
-        qd_1_t_2*w_1_t_75 - S_dot_tip_y*w_1_t_72 - qd_1_t_3*w_1_t_76)
-    )
-    qd_1_t_5 = (
-    inv_w_1_t_150*(S_dot_tip_y*w_1_t_54 + qd_1_t_3*w_1_t_64 + qd_1_t_4*w_1_t_58 -
-        S_dot_tip_x*w_1_t_53 - S_dot_tip_z*w_1_t_55 - qd_1_t*w_1_t_56 - qd_1_t_2*w_1_t_57)
-    )
-    qd_1_t_6 = (
-    inv_w_1_t_101*(S_dot_tip_z*w_1_t_33 + qd_1_t*w_1_t_34 + qd_1_t_2*w_1_t_35 + qd_1_t_3*w_1_t_47
-        + qd_1_t_4*w_1_t_42 - S_dot_tip_y*w_1_t_32 - qd_1_t_5*w_1_t_36)
-    )
-    qd_1_t_7 = (
-    inv_w_1_t_69*(S_dot_tip_y*w_1_t_16 + qd_1_t_2*w_1_t_17 + qd_1_t_3*w_1_t_28 + qd_1_t_5*w_1_t_21
-        - qd_1_t_4*w_1_t_25 - qd_1_t_6*w_1_t_18)
-    )
-    # (rrrrrr-V40) angular velocity of link 1
-    omega_1_t = qd_1_t_5*s_2
-    omega_1_t_2 = c_2_t*qd_1_t_5
-    # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_x = omega_1_t_2*qd_1_t_4
-    zeta_2_y = omega_1_t*qd_1_t_4
-    # (rrrrrr-V42) angular velocity of link 2
-    omega_2_r0_x = omega_1_t_2*s_3 - c_3*omega_1_t
-    omega_2_r0_y = c_3*omega_1_t_2 + omega_1_t*s_3
-    # (rrrrrr-A5) angular acceleration of link 3 from the turning of axis 3
-    zeta_3_x = omega_2_r0_y*qd_1_t_3
-    zeta_3_y = omega_2_r0_x*qd_1_t_3
-    # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_r0_x = c_3*zeta_2_x + s_3*zeta_2_y
-    zeta_2_r0_y = c_3*zeta_2_y - s_3*zeta_2_x
-    # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
-    beta_3_x = zeta_2_r0_x + zeta_3_x
-    beta_3_y = zeta_2_r0_y - zeta_3_y
-    # (rrrrrr-V44) angular velocity of link 3
-    omega_3_z = qd_1_t_3 + qd_1_t_4
-    omega_3_r1_x = omega_3_z*s_4 - c_4_t*omega_2_r0_y
-    omega_3_r1_y = -c_4_t*omega_3_z - omega_2_r0_y*s_4
-    # (rrrrrr-A7) angular acceleration of link 4 from the turning of axis 4
-    zeta_4_x = omega_3_r1_y*qd_1_t_6
-    zeta_4_y = omega_3_r1_x*qd_1_t_6
-    # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
-    beta_3_t = beta_3_y*c_4_t
-    beta_3_t_2 = beta_3_y*s_4
-    # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
-    beta_4_x = zeta_4_x - beta_3_t
-    beta_4_y = -beta_3_t_2 - zeta_4_y
-    # (rrrrrr-V46) angular velocity of link 4
-    omega_4_z = omega_2_r0_x + qd_1_t_6
-    omega_4_t = c_5_t*omega_3_r1_y
-    omega_4_r1_x = omega_4_z*s_5 - omega_4_t
-    omega_4_t_2 = omega_3_r1_y*s_5
-    omega_4_r1_y = -omega_4_t_2 - c_5_t*omega_4_z
-    # (rrrrrr-A9) angular acceleration of link 5 from the turning of axis 5
-    zeta_5_x = omega_4_r1_y*qd_1_t_7
-    zeta_5_y = omega_4_r1_x*qd_1_t_7
-    # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
-    beta_4_t = beta_3_x*s_5
-    beta_4_r1_x = beta_4_t - beta_4_y*c_5_t
-    beta_4_t_2 = beta_3_x*c_5_t
-    beta_4_r1_y = -beta_4_t_2 - beta_4_y*s_5
-    # (rrrrrr-A10) angular acceleration of link 5 at zero joint accelerations
-    beta_5_x = beta_4_r1_x + zeta_5_x
-    beta_5_y = beta_4_r1_y - zeta_5_y
-    # (rrrrrr-V48) angular velocity of link 5
-    omega_5_z = omega_3_r1_x + qd_1_t_7
-    # (rrrrrr-A14) rate of moment direction 1
-    nd_m1_t = end_p1_r8_y*omega_4_r1_y
-    omega_tip_x = (
-    axis_x_rrrrrr_axes5_x*omega_x + axis_x_rrrrrr_axes5_y*omega_y + axis_x_rrrrrr_axes5_z*omega_z
-    )
-    omega_tip_y = (
-    axis_y_rrrrrr_axes5_in_base_x*omega_x + axis_y_rrrrrr_axes5_in_base_y*omega_y +
-        axis_y_rrrrrr_axes5_in_base_z*omega_z
-    )
-    omega_tip_z = (
-    axis_z_rrrrrr_axes5_in_base_x*omega_x + axis_z_rrrrrr_axes5_in_base_y*omega_y +
-        axis_z_rrrrrr_axes5_in_base_z*omega_z
-    )
-    nd_m1_t_2 = end_p1_r8_x*omega_tip_z - end_p1_r6_x*omega_tip_x
-    nd_m1_x = -nd_m1_t_2 - end_p1_r6_x*omega_4_r1_x
-    nd_m1_y = end_p1_r6_x*omega_tip_y - end_p1_r6_x*omega_4_r1_y - end_p1_r8_y*omega_tip_z
-    # (rrrrrr-A15) bias of the angular acceleration along moment direction 1
-    nu_1_t = beta_5_x*end_p1_r8_y - beta_5_y*end_p1_r8_x
-    nu_1_t_2 = omega_4_r1_x - omega_tip_x
-    nu_1_t_3 = omega_4_r1_y - omega_tip_y
-    nu_1_t_4 = omega_5_z - omega_tip_z
-    nu_1_t_5 = nd_m1_x*nu_1_t_2 + nd_m1_y*nu_1_t_3 + nu_1_t_4*(nd_m1_t + end_p1_r8_x*omega_4_r1_x)
-    nu_1 = nu_1_t - nu_1_t_5
-    # (rrrrrr-A16) rate of moment direction 2
-    nd_m2_y = end_p1_r8_x*omega_tip_y - end_p1_r8_x*omega_4_r1_y - end_p1_r8_y*omega_tip_x
-    nd_m2_z = nd_m1_t_2 - end_p1_r8_x*omega_5_z
-    # (rrrrrr-A17) bias of the angular acceleration along moment direction 2
-    nu_2_t = beta_5_y*end_p1_r6_x - beta_4_x*end_p1_r8_y
-    nu_2_t_2 = nd_m2_y*nu_1_t_3 + nd_m2_z*nu_1_t_4 + nu_1_t_2*(nd_m1_t + end_p1_r6_x*omega_5_z)
-    nu_2 = nu_2_t - nu_2_t_2
-    # (rrrrrr-V43) centripetal tensor of link 2
-    W_2_t = omega_1_t*omega_1_t
-    W_2_t_2 = omega_1_t_2*omega_1_t_2
-    W_2_t_3 = qd_1_t_4*qd_1_t_4
-    W_2_xy = omega_1_t*omega_1_t_2
-    # (rrrrrr-V45) centripetal tensor of link 3
-    W_3_t = omega_2_r0_x*omega_2_r0_x
-    W_3_t_2 = omega_2_r0_y*omega_2_r0_y
-    W_3_t_3 = omega_3_z*omega_3_z
-    W_3_xx = W_3_t_2 + W_3_t_3
-    W_3_xy = omega_2_r0_x*omega_2_r0_y
-    W_3_xz = omega_2_r0_x*omega_3_z
-    W_3_yz = omega_2_r0_y*omega_3_z
-    # (rrrrrr-V47) centripetal tensor of link 4
-    W_4_t = omega_3_r1_x*omega_3_r1_x
-    W_4_t_2 = omega_3_r1_y*omega_3_r1_y
-    W_4_t_3 = omega_4_z*omega_4_z
-    W_4_xy = omega_3_r1_x*omega_3_r1_y
-    W_4_xz = omega_3_r1_x*omega_4_z
-    W_4_yz = omega_3_r1_y*omega_4_z
-    # (rrrrrr-V49) centripetal tensor of link 5
-    W_5_t = omega_4_r1_x*omega_4_r1_x
-    W_5_t_2 = omega_4_r1_y*omega_4_r1_y
-    W_5_t_3 = omega_5_z*omega_5_z
-    W_5_xx = W_5_t_2 + W_5_t_3
-    W_5_xy = omega_4_r1_x*omega_4_r1_y
-    W_5_xz = omega_4_r1_x*omega_5_z
-    W_5_yz = omega_4_r1_y*omega_5_z
-    # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-    bias_t = rrrrrr_joint2_offset_x*s_2
-    bias_t_2 = c_2_t*rrrrrr_joint2_offset_x
-    d_2_r2_x = bias_t*c_3 - bias_t_2*s_3
-    d_2_r2_y = -bias_t*s_3 - bias_t_2*c_3
-    bias_t_3 = c_4_t*d_2_r2_y
-    bias_t_4 = d_2_r2_y*s_4
-    d_2_r6_x = bias_t_4*c_5_t + d_2_r2_x*s_5
-    d_2_r6_y = bias_t_4*s_5 - c_5_t*d_2_r2_x
-    # (rrrrrr-V40) angular velocity of link 1
-    omega_1_x = e_1_r6_x*qd_1_t_5
-    omega_1_y = e_1_r6_y*qd_1_t_5
-    omega_1_z = qd_1_t_5*v_1_t
-    # (rrrrrr-V41) centripetal tensor of link 1
-    W_1_t = omega_1_x*omega_1_x
-    W_1_t_2 = omega_1_y*omega_1_y
-    W_1_t_3 = omega_1_z*omega_1_z
-    W_1_xy = omega_1_x*omega_1_y
-    W_1_xz = omega_1_x*omega_1_z
-    W_1_yz = omega_1_y*omega_1_z
-    # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-    bias_t_5 = c_3*rrrrrr_joint3_offset_x
-    bias_t_6 = rrrrrr_joint3_offset_x*s_3
-    bias_t_7 = bias_t_6*c_4_t
-    bias_t_8 = bias_t_6*s_4
-    d_3_r4_x = bias_t_5*s_5 - bias_t_8*c_5_t
-    d_3_r4_y = -bias_t_5*c_5_t - bias_t_8*s_5
-    # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_t = c_4_t*zeta_2_r0_y
-    zeta_2_t_2 = s_4*zeta_2_r0_y
-    zeta_2_r4_x = c_5_t*zeta_2_t_2 + s_5*zeta_2_r0_x
-    zeta_2_r4_y = s_5*zeta_2_t_2 - c_5_t*zeta_2_r0_x
-    # (rrrrrr-V42) angular velocity of link 2
-    omega_2_x = qd_1_t_4*v_2_t - omega_1_x
-    omega_2_y = qd_1_t_4*v_2_t_2 - omega_1_y
-    omega_2_z = omega_1_z + qd_1_t_4*s_4
-    # (rrrrrr-V43) centripetal tensor of link 2
-    W_2_t_4 = omega_2_x*omega_2_x
-    W_2_t_5 = omega_2_y*omega_2_y
-    W_2_t_6 = omega_2_z*omega_2_z
-    W_2_xy_2 = omega_2_x*omega_2_y
-    W_2_xz = omega_2_x*omega_2_z
-    W_2_yz = omega_2_y*omega_2_z
-    # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-    bias_t_9 = rrrrrr_joint4_offset_x*s_5
-    bias_t_10 = c_5_t*rrrrrr_joint4_offset_x
-    # (rrrrrr-V44) angular velocity of link 3
-    omega_3_r3_x = omega_2_r0_x*s_5 - omega_4_t
-    omega_3_r3_y = -omega_4_t_2 - c_5_t*omega_2_r0_x
-    # (rrrrrr-V45) centripetal tensor of link 3
-    W_3_xy_2 = omega_3_r3_x*omega_3_r3_y
-    # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-    bias_t_11 = rrrrrr_joint5_offset_x*s_5
-    bias_t_12 = c_5_t*rrrrrr_joint5_offset_x
-    bias_t_13 = W_5_xy + beta_4_x
-    bias_x = (
-    W_1_xy*d_2_r6_y + W_1_xz*bias_t_3 + bias_t_7*(W_2_xz + zeta_2_r4_y) + d_3_r4_y*(W_2_xy_2 +
-        zeta_2_t) - W_5_xx*rrrrrr_platform_joint_offset_x - bias_t_10*(W_3_xy_2 + beta_3_t) -
-        bias_t_11*(W_4_t + W_5_t_2) - bias_t_12*(W_5_xy - beta_4_x) - bias_t_9*(W_4_t +
-        omega_3_r3_y*omega_3_r3_y) - d_2_r6_x*(W_1_t_2 + W_1_t_3) - d_3_r4_x*(W_2_t_5 + W_2_t_6)
-    )
-    bias_y = (
-    W_1_xy*d_2_r6_x + W_1_yz*bias_t_3 + bias_t_10*(W_4_t + omega_3_r3_x*omega_3_r3_x) +
-        bias_t_11*bias_t_13 + bias_t_12*(W_4_t + W_5_t) + bias_t_13*rrrrrr_platform_joint_offset_x
-        + bias_t_7*(W_2_yz - zeta_2_r4_x) + bias_t_9*(W_3_xy_2 - beta_3_t) + d_3_r4_x*(W_2_xy_2 -
-        zeta_2_t) - d_2_r6_y*(W_1_t + W_1_t_3) - d_3_r4_y*(W_2_t_4 + W_2_t_6)
-    )
-    bias_z = (
-    bias_t_11*(omega_3_r1_x*omega_4_r1_x - beta_4_r1_y) + bias_t_3*(W_1_t + W_1_t_2) +
-        bias_t_9*(beta_4_t_2 + omega_3_r1_x*omega_3_r3_x - beta_3_t_2*s_5) + d_3_r4_x*(W_2_xz -
-        zeta_2_r4_y) + d_3_r4_y*(W_2_yz + zeta_2_r4_x) + rrrrrr_platform_joint_offset_x*(W_5_xz -
-        beta_5_y) - W_1_xz*d_2_r6_x - W_1_yz*d_2_r6_y - bias_t_10*(beta_4_t + beta_3_t_2*c_5_t +
-        omega_3_r1_x*omega_3_r3_y) - bias_t_12*(beta_4_r1_x + omega_3_r1_x*omega_4_r1_y) -
-        bias_t_7*(W_2_t_4 + W_2_t_5)
-    )
-    # (rrrrrr-A1) centripetal acceleration of the connection point
-    u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z
-    u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x
-    u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y
-    u_1_tip_x = (
-    axis_x_rrrrrr_axes5_x*u_1_x + axis_x_rrrrrr_axes5_y*u_1_y + axis_x_rrrrrr_axes5_z*u_1_z
-    )
-    u_1_tip_y = (
-    axis_y_rrrrrr_axes5_in_base_x*u_1_x + axis_y_rrrrrr_axes5_in_base_y*u_1_y +
-        axis_y_rrrrrr_axes5_in_base_z*u_1_z
-    )
-    u_1_tip_z = (
-    axis_z_rrrrrr_axes5_in_base_x*u_1_x + axis_z_rrrrrr_axes5_in_base_y*u_1_y +
-        axis_z_rrrrrr_axes5_in_base_z*u_1_z
-    )
-    # (rrrrrr-A13) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-    rel_o_x = u_1_tip_x - bias_x
-    rel_o_y = u_1_tip_y - bias_y
-    rel_o_z = u_1_tip_z - bias_z
-    # (rrrrrr-A21) remainder without the acceleration in: acceleration of joint 1
-    qdd_1_o_t = nu_1*size
-    qdd_1_o_t_2 = nu_2*size
-    qdd_1_o_t_3 = (
-    inv_w_1_t_222*(qdd_1_o_t*w_1_t_86 + qdd_1_o_t_2*w_1_t_87 + rel_o_x*w_1_t_83 + rel_o_z*w_1_t_85
-        - rel_o_y*w_1_t_84)
-    )
-    qdd_1_o_t_4 = (
-    inv_w_1_t_194*(qdd_1_o_t*w_1_t_74 + qdd_1_o_t_2*w_1_t_75 + rel_o_x*w_1_t_71 + rel_o_z*w_1_t_73
-        - qdd_1_o_t_3*w_1_t_76 - rel_o_y*w_1_t_72)
-    )
-    qdd_1_o_t_5 = (
-    inv_w_1_t_150*(qdd_1_o_t_3*w_1_t_64 + qdd_1_o_t_4*w_1_t_58 + rel_o_y*w_1_t_54 -
-        qdd_1_o_t*w_1_t_56 - qdd_1_o_t_2*w_1_t_57 - rel_o_x*w_1_t_53 - rel_o_z*w_1_t_55)
-    )
-    qdd_1_o_t_6 = (
-    inv_w_1_t_101*(qdd_1_o_t*w_1_t_34 + qdd_1_o_t_2*w_1_t_35 + qdd_1_o_t_3*w_1_t_47 +
-        qdd_1_o_t_4*w_1_t_42 + rel_o_z*w_1_t_33 - qdd_1_o_t_5*w_1_t_36 - rel_o_y*w_1_t_32)
-    )
-    # (rrrrrr-A31) remainder without the acceleration in: angular acceleration of link 1
-    alpha_1_o_t = qdd_1_o_t_5*s_2
-    alpha_1_o_t_2 = c_2_t*qdd_1_o_t_5
-    # (rrrrrr-A35) remainder without the acceleration in: angular acceleration of link 2
-    alpha_2_o_x = zeta_2_x - alpha_1_o_t
-    alpha_2_o_y = alpha_1_o_t_2 + zeta_2_y
-    # (rrrrrr-A37) remainder of the acceleration tensor of link 2
-    B_2_o_xy = -W_2_xy - qdd_1_o_t_4
-    B_2_o_yx = qdd_1_o_t_4 - W_2_xy
-    B_2_o_zx = -alpha_2_o_y - zeta_2_y
-    B_2_o_zy = alpha_2_o_x + zeta_2_x
-    # (rrrrrr-A55) remainder without the acceleration in: acceleration of the origin of joint 3
-    a_o3_o_t = rrrrrr_joint3_offset_x*(W_2_t_2 + W_2_t_3)
-    a_o3_o_t_2 = B_2_o_yx*rrrrrr_joint3_offset_x
-    a_o3_o_t_3 = B_2_o_zx*rrrrrr_joint3_offset_x
-    # (rrrrrr-A39) remainder without the acceleration in: angular acceleration of link 3
-    alpha_3_o_x = zeta_3_x + alpha_2_o_x*c_3 + alpha_2_o_y*s_3
-    alpha_3_o_y = alpha_2_o_y*c_3 - zeta_3_y - alpha_2_o_x*s_3
-    alpha_3_o_z = qdd_1_o_t_3 + qdd_1_o_t_4
-    # (rrrrrr-A41) remainder of the acceleration tensor of link 3
-    B_3_o_xy = W_3_xy - alpha_3_o_z
-    B_3_o_xz = W_3_xz + alpha_3_o_y
-    B_3_o_yx = W_3_xy + alpha_3_o_z
-    B_3_o_yz = W_3_yz - alpha_3_o_x
-    B_3_o_zx = W_3_xz - alpha_3_o_y
-    B_3_o_zy = W_3_yz + alpha_3_o_x
-    # (rrrrrr-A55) remainder without the acceleration in: acceleration of the origin of joint 3
-    a_o3_o_r0_x = a_o3_o_t_2*s_3 - a_o3_o_t*c_3
-    a_o3_o_r0_y = a_o3_o_t*s_3 + a_o3_o_t_2*c_3
-    # (rrrrrr-A57) remainder without the acceleration in: acceleration of the origin of joint 4
-    a_o4_o_x = a_o3_o_r0_x - W_3_xx*rrrrrr_joint4_offset_x
-    a_o4_o_y = a_o3_o_r0_y + B_3_o_yx*rrrrrr_joint4_offset_x
-    a_o4_o_z = a_o3_o_t_3 + B_3_o_zx*rrrrrr_joint4_offset_x
-    # (rrrrrr-N16) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
-    g_r1_x = g_r0_y*s_1 - c_1_t*g_r0_x
-    g_r1_y = -c_1_t*g_r0_y - g_r0_x*s_1
-    g_r3_x = g_r0_z*s_2 - c_2_t*g_r1_y
-    g_r3_y = -c_2_t*g_r0_z - g_r1_y*s_2
-    g_r4_x = c_3*g_r3_x + g_r3_y*s_3
-    g_r4_y = c_3*g_r3_y - g_r3_x*s_3
-    g_r6_x = g_r1_x*s_4 - c_4_t*g_r4_y
-    g_r6_y = -c_4_t*g_r1_x - g_r4_y*s_4
-    acc_4_o_x = a_o4_o_z*s_4 - g_r6_x - a_o4_o_y*c_4_t
-    acc_4_o_y = -g_r6_y - a_o4_o_y*s_4 - a_o4_o_z*c_4_t
-    acc_4_o_z = a_o4_o_x - g_r4_x
-    # (rrrrrr-A43) remainder without the acceleration in: angular acceleration of link 4
-    alpha_4_o_x = zeta_4_x + alpha_3_o_z*s_4 - alpha_3_o_y*c_4_t
-    alpha_4_o_y = -zeta_4_y - alpha_3_o_y*s_4 - alpha_3_o_z*c_4_t
-    alpha_4_o_z = alpha_3_o_x + qdd_1_o_t_6
-    # (rrrrrr-A45) remainder of the acceleration tensor of link 4
-    B_4_o_xy = W_4_xy - alpha_4_o_z
-    B_4_o_xz = W_4_xz + alpha_4_o_y
-    B_4_o_yx = W_4_xy + alpha_4_o_z
-    B_4_o_yz = W_4_yz - alpha_4_o_x
-    B_4_o_zx = W_4_xz - alpha_4_o_y
-    B_4_o_zy = W_4_yz + alpha_4_o_x
-    # (rrrrrr-N73) remainder without the acceleration in: inertia moment of the links that turn with link 4, about their reference points
-    mu_4_o_x = (
-    B_4_o_yx*J_4_xz + B_4_o_zx*J_4_yz + B_4_o_zy*Sigma_4_yy - B_4_o_yz*Sigma_4_zz -
-        J_4_xy*(W_4_t_2 - W_4_t_3) - acc_4_o_y*h_4_x - acc_4_o_z*h_4_y
-    )
-    mu_4_o_y = (
-    B_4_o_xy*J_4_xy + B_4_o_xz*Sigma_4_zz + acc_4_o_x*h_4_x - B_4_o_zx*Sigma_4_xx -
-        B_4_o_zy*J_4_yz - J_4_xz*(W_4_t - W_4_t_3) - acc_4_o_z*h_4_z
-    )
-    mu_4_o_z = (
-    B_4_o_yx*Sigma_4_xx + acc_4_o_x*h_4_y + acc_4_o_y*h_4_z - B_4_o_xy*Sigma_4_yy -
-        B_4_o_xz*J_4_xy - B_4_o_yz*J_4_xz - J_4_yz*(W_4_t - W_4_t_2)
-    )
-    # (rrrrrr-N22) remainder without the acceleration in: acceleration of the reference point of link 5, less gravity
-    acc_5_o_x = u_1_tip_x + c_5_t*g_r6_y - g_r4_x*s_5
-    acc_5_o_y = u_1_tip_y + c_5_t*g_r4_x + g_r6_y*s_5
-    acc_5_o_z = u_1_tip_z - g_r6_x
-    # (rrrrrr-A49) remainder without the acceleration in: angular acceleration of link 5
-    alpha_5_o_x = zeta_5_x + alpha_4_o_z*s_5 - alpha_4_o_y*c_5_t
-    alpha_5_o_y = -zeta_5_y - alpha_4_o_y*s_5 - alpha_4_o_z*c_5_t
-    alpha_5_o_z = (
-    alpha_4_o_x + inv_w_1_t_69*(qdd_1_o_t_2*w_1_t_17 + qdd_1_o_t_3*w_1_t_28 + qdd_1_o_t_5*w_1_t_21
-        + rel_o_y*w_1_t_16 - qdd_1_o_t_4*w_1_t_25 - qdd_1_o_t_6*w_1_t_18)
-    )
-    # (rrrrrr-A51) remainder of the acceleration tensor of link 5
-    B_5_o_xy = W_5_xy - alpha_5_o_z
-    B_5_o_xz = W_5_xz + alpha_5_o_y
-    B_5_o_yx = W_5_xy + alpha_5_o_z
-    B_5_o_yz = W_5_yz - alpha_5_o_x
-    B_5_o_zx = W_5_xz - alpha_5_o_y
-    B_5_o_zy = W_5_yz + alpha_5_o_x
-    # (rrrrrr-N65) remainder without the acceleration in: inertia moment of the links that turn with link 5, about their reference points
-    mu_5_o_x = (
-    B_5_o_yx*J_5_xz + B_5_o_zy*Sigma_5_yy + J_5_yz*(W_5_t_2 - W_5_t_3) + acc_5_o_z*h_5_y -
-        B_5_o_yz*Sigma_5_zz - B_5_o_zx*J_5_xy - acc_5_o_y*h_5_z
-    )
-    mu_5_o_y = (
-    B_5_o_xz*Sigma_5_zz + B_5_o_zy*J_5_xy + acc_5_o_x*h_5_z - B_5_o_xy*J_5_yz -
-        B_5_o_zx*Sigma_5_xx - J_5_xz*(W_5_t - W_5_t_3) - acc_5_o_z*h_5_x
-    )
-    mu_5_o_z = (
-    B_5_o_xz*J_5_yz + B_5_o_yx*Sigma_5_xx + J_5_xy*(W_5_t - W_5_t_2) + acc_5_o_y*h_5_x -
-        B_5_o_xy*Sigma_5_yy - B_5_o_yz*J_5_xz - acc_5_o_x*h_5_y
-    )
-    # (rrrrrr-N75) remainder without the acceleration in: moment about joint 4 of the links from 4 outwards, the force at the connection point left out
-    N_4_o_x = mu_4_o_x + mu_5_o_z
-    N_4_o_y = mu_4_o_y - c_5_t*mu_5_o_x - mu_5_o_y*s_5
-    N_4_o_z = mu_4_o_z + mu_5_o_x*s_5 - c_5_t*mu_5_o_y
-    # (rrrrrr-N20) remainder without the acceleration in: inertia force of link 4 less its weight
-    f_4_o_x = (
-    B_4_o_xz*h_4_x + acc_4_o_x*rrrrrr_link4_mass - B_4_o_xy*h_4_y - h_4_z*(W_4_t_2 + W_4_t_3)
-    )
-    f_4_o_y = (
-    B_4_o_yx*h_4_z + B_4_o_yz*h_4_x + acc_4_o_y*rrrrrr_link4_mass + h_4_y*(W_4_t + W_4_t_3)
-    )
-    f_4_o_z = (
-    B_4_o_zx*h_4_z + acc_4_o_z*rrrrrr_link4_mass - B_4_o_zy*h_4_y - h_4_x*(W_4_t + W_4_t_2)
-    )
-    # (rrrrrr-N10) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-    acc_3_o_x = a_o3_o_r0_x - g_r4_x
-    acc_3_o_y = a_o3_o_r0_y - g_r4_y
-    acc_3_o_z = a_o3_o_t_3 - g_r1_x
-    # (rrrrrr-N83) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-    mu_3_o_x = (
-    B_3_o_yx*J_3_xz + B_3_o_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) + acc_3_o_z*h_3_y -
-        B_3_o_yz*Sigma_3_zz - B_3_o_zx*J_3_xy - acc_3_o_y*h_3_z
-    )
-    mu_3_o_y = (
-    B_3_o_xz*Sigma_3_zz + B_3_o_zy*J_3_xy + acc_3_o_x*h_3_z - B_3_o_xy*J_3_yz -
-        B_3_o_zx*Sigma_3_xx - J_3_xz*(W_3_t - W_3_t_3) - acc_3_o_z*h_3_x
-    )
-    mu_3_o_z = (
-    B_3_o_xz*J_3_yz + B_3_o_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + acc_3_o_y*h_3_x -
-        B_3_o_xy*Sigma_3_yy - B_3_o_yz*J_3_xz - acc_3_o_x*h_3_y
-    )
-    # (rrrrrr-N20) remainder without the acceleration in: inertia force of link 4 less its weight
-    f_4_o_r0_x = -c_4_t*f_4_o_x - f_4_o_y*s_4
-    f_4_o_r0_y = f_4_o_x*s_4 - c_4_t*f_4_o_y
-    # (rrrrrr-N85) remainder without the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
-    N_3_o_x = N_4_o_z + mu_3_o_x
-    N_3_o_y = mu_3_o_y - N_4_o_x*c_4_t - N_4_o_y*s_4 - f_4_o_r0_y*rrrrrr_joint4_offset_x
-    N_3_o_z = mu_3_o_z + N_4_o_x*s_4 + f_4_o_r0_x*rrrrrr_joint4_offset_x - N_4_o_y*c_4_t
-    # (rrrrrr-N14) remainder without the acceleration in: inertia force of link 3 less its weight
-    f_3_o_x = B_3_o_xy*h_3_y + B_3_o_xz*h_3_z + acc_3_o_x*rrrrrr_link3_mass - W_3_xx*h_3_x
-    f_3_o_y = (
-    B_3_o_yx*h_3_x + B_3_o_yz*h_3_z + acc_3_o_y*rrrrrr_link3_mass - h_3_y*(W_3_t + W_3_t_3)
-    )
-    f_3_o_z = (
-    B_3_o_zx*h_3_x + B_3_o_zy*h_3_y + acc_3_o_z*rrrrrr_link3_mass - h_3_z*(W_3_t + W_3_t_2)
-    )
-    # (rrrrrr-N87) remainder without the acceleration in: inertia force of the links from 3 outwards, the last link left out
-    T_3_o_x = f_3_o_x + f_4_o_z
-    T_3_o_y = f_3_o_y + f_4_o_r0_x
-    T_3_o_z = f_3_o_z + f_4_o_r0_y
-    # (rrrrrr-N95) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-    mu_2_o_x = (
-    B_2_o_yx*J_2_xz + B_2_o_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) + g_r3_y*h_2_z -
-        B_2_o_zx*J_2_xy - Sigma_2_zz*alpha_1_o_t - g_r1_x*h_2_y
-    )
-    mu_2_o_y = (
-    B_2_o_zy*J_2_xy + Sigma_2_zz*alpha_1_o_t_2 + g_r1_x*h_2_x - B_2_o_xy*J_2_yz -
-        B_2_o_zx*Sigma_2_xx - J_2_xz*(W_2_t - W_2_t_3) - g_r3_x*h_2_z
-    )
-    mu_2_o_z = (
-    B_2_o_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + J_2_yz*alpha_1_o_t_2 + g_r3_x*h_2_y -
-        B_2_o_xy*Sigma_2_yy - J_2_xz*alpha_1_o_t - g_r3_y*h_2_x
-    )
-    # (rrrrrr-N97) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-    N_2_o_x = mu_2_o_x + N_3_o_x*c_3 - N_3_o_y*s_3
-    N_2_o_y = mu_2_o_y + N_3_o_x*s_3 + N_3_o_y*c_3 - T_3_o_z*rrrrrr_joint3_offset_x
-    N_2_o_z = N_3_o_z + mu_2_o_z + rrrrrr_joint3_offset_x*(T_3_o_x*s_3 + T_3_o_y*c_3)
-    # (rrrrrr-N107) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-    mu_1_o_z = -J_1_xx*qdd_1_o_t_5 - g_r1_x*h_1_y - g_r1_y*h_1_z
-    # (rrrrrr-N109) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-    N_1_o_z = mu_1_o_z + N_2_o_x*s_2 - N_2_o_y*c_2_t
-    # (rrrrrr-N117) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-    G_o_t = inv_w_1_t_69*mu_5_o_z
-    G_o_t_2 = inv_w_1_t_101*(G_o_t*w_1_t_18 - N_4_o_z)
-    G_o_t_3 = inv_w_1_t_150*(G_o_t*w_1_t_21 + G_o_t_2*w_1_t_36 - N_1_o_z)
-    G_o_t_4 = inv_w_1_t_194*(G_o_t*w_1_t_25 + G_o_t_2*w_1_t_42 - N_2_o_z - G_o_t_3*w_1_t_58)
-    G_o_t_5 = (
-    inv_w_1_t_222*(N_3_o_z + G_o_t*w_1_t_28 + G_o_t_3*w_1_t_64 + G_o_t_4*w_1_t_76 -
-        G_o_t_2*w_1_t_47)
-    )
-    G_o_t_6 = size*(G_o_t_2*w_1_t_34 + G_o_t_3*w_1_t_56 + G_o_t_4*w_1_t_74 - G_o_t_5*w_1_t_86)
-    G_o_t_7 = (
-    size*(G_o_t_2*w_1_t_35 + G_o_t_3*w_1_t_57 + G_o_t_4*w_1_t_75 - G_o_t*w_1_t_17 -
-        G_o_t_5*w_1_t_87)
-    )
-    # (rrrrrr-N133) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    c_o_x = (
-    G_o_t_3*w_1_t_53 + G_o_t_4*w_1_t_71 + W_5_xx*h_5_x - B_5_o_xy*h_5_y - B_5_o_xz*h_5_z -
-        G_o_t_5*w_1_t_83
-    )
-    c_o_y = (
-    G_o_t_5*w_1_t_84 + h_5_y*(W_5_t + W_5_t_3) - B_5_o_yx*h_5_x - B_5_o_yz*h_5_z - G_o_t*w_1_t_16
-        - G_o_t_2*w_1_t_32 - G_o_t_3*w_1_t_54 - G_o_t_4*w_1_t_72
-    )
-    c_o_z = (
-    G_o_t_2*w_1_t_33 + G_o_t_3*w_1_t_55 + G_o_t_4*w_1_t_73 + h_5_z*(W_5_t + W_5_t_2) -
-        B_5_o_zx*h_5_x - B_5_o_zy*h_5_y - G_o_t_5*w_1_t_85
-    )
-    # (rrrrrr-N139) velocity and gravity terms of the leg force
-    U_in_base_x = (
-    -axis_x_rrrrrr_axes5_x*c_o_x - axis_y_rrrrrr_axes5_in_base_x*c_o_y -
-        axis_z_rrrrrr_axes5_in_base_x*c_o_z
-    )
-    U_in_base_y = (
-    -axis_x_rrrrrr_axes5_y*c_o_x - axis_y_rrrrrr_axes5_in_base_y*c_o_y -
-        axis_z_rrrrrr_axes5_in_base_y*c_o_z
-    )
-    U_in_base_z = (
-    -axis_x_rrrrrr_axes5_z*c_o_x - axis_y_rrrrrr_axes5_in_base_z*c_o_y -
-        axis_z_rrrrrr_axes5_in_base_z*c_o_z
-    )
-    # (rrrrrr-N129) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-    G_m_o_t = G_o_t_6*end_p1_r8_y
-    G_m_o_t_2 = G_o_t_7*end_p1_r8_y
-    G_m_o_y = G_o_t_7*end_p1_r6_x - G_o_t_6*end_p1_r8_x
-    # (M7) rotational part of Z
-    Z_a_t = (
-    G_m_o_t*axis_x_rrrrrr_axes5_x + G_m_o_y*axis_y_rrrrrr_axes5_in_base_x +
-        U_in_base_z*q_in_base_y - G_m_o_t_2*axis_z_rrrrrr_axes5_in_base_x -
-        U_in_base_y*q_in_base_z
-    )
-    Z_a_t_2 = (
-    G_m_o_t*axis_x_rrrrrr_axes5_y + G_m_o_y*axis_y_rrrrrr_axes5_in_base_y +
-        U_in_base_x*q_in_base_z - G_m_o_t_2*axis_z_rrrrrr_axes5_in_base_y -
-        U_in_base_z*q_in_base_x
-    )
-    Z_a_t_3 = (
-    G_m_o_t*axis_x_rrrrrr_axes5_z + G_m_o_y*axis_y_rrrrrr_axes5_in_base_z +
-        U_in_base_y*q_in_base_x - G_m_o_t_2*axis_z_rrrrrr_axes5_in_base_z -
-        U_in_base_x*q_in_base_y
-    )
-    ok = (abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE * size) & (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) & (abs(w_1_t_82) > _TOLERANCE * size)
-    return (ok, (U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,), (),)
-
-
-def _Z_after(c, s, t, f):
-    Z_p_x, Z_p_y, Z_p_z, Z_q_in_base_x, Z_q_in_base_y, Z_q_in_base_z = s
+    sums = [0.0] * 6
+    for leg, k in legs[0]:
+        (
+        J_1_xx, J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, J_4_xy, J_4_xz, J_4_yz, J_5_xy,
+            J_5_xz, J_5_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy,
+            Sigma_3_zz, Sigma_4_xx, Sigma_4_yy, Sigma_4_zz, Sigma_5_xx, Sigma_5_yy, Sigma_5_zz,
+            g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, h_4_x,
+            h_4_y, h_4_z, h_5_x, h_5_y, h_5_z, rrrrrr_base_frame_xx, rrrrrr_base_frame_xy,
+            rrrrrr_base_frame_xz, rrrrrr_base_frame_yx, rrrrrr_base_frame_yy,
+            rrrrrr_base_frame_yz, rrrrrr_base_frame_zx, rrrrrr_base_frame_zy,
+            rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x, rrrrrr_joint3_offset_x,
+            rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x, rrrrrr_link3_mass, rrrrrr_link4_mass,
+            rrrrrr_platform_joint_axis_platform_x, rrrrrr_platform_joint_axis_platform_y,
+            rrrrrr_platform_joint_axis_platform_z, rrrrrr_platform_joint_offset_x,
+            rrrrrr_platform_point_x, rrrrrr_platform_point_y, rrrrrr_platform_point_z, size,
+            size_t,
+        ) = k
+        q_1 = q[[0, 5, 10, 15, 20, 25][leg]]
+        q_2 = q[[1, 6, 11, 16, 21, 26][leg]]
+        q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
+        q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
+        q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
+        # (rrrrrr-K10) cosine of the angle of joint 5 from its reference direction
+        c_5_t = sin(q_5)
+        # (rrrrrr-K11) sine of the angle of joint 5 from its reference direction
+        s_5 = cos(q_5)
+        # (rrrrrr-V2) from joint 4 to the connection point, along the links
+        r_4_t = c_5_t*rrrrrr_platform_joint_offset_x
+        r_4_z = rrrrrr_joint5_offset_x + rrrrrr_platform_joint_offset_x*s_5
+        # (rrrrrr-K8) cosine of the angle of joint 4 from its reference direction
+        c_4_t = sin(q_4)
+        # (rrrrrr-K9) sine of the angle of joint 4 from its reference direction
+        s_4 = cos(q_4)
+        # (rrrrrr-V2) from joint 4 to the connection point, along the links
+        r_4_t_2 = r_4_t*s_4
+        r_4_t_3 = c_4_t*r_4_t
+        # (rrrrrr-V3) from joint 3 to the connection point, along the links
+        r_3_x = r_4_z + rrrrrr_joint4_offset_x
+        # (rrrrrr-K6) cosine of the angle of joint 3 from its reference direction
+        c_3 = cos(q_3)
+        # (rrrrrr-K7) sine of the angle of joint 3 from its reference direction
+        s_3 = sin(q_3)
+        # (rrrrrr-V3) from joint 3 to the connection point, along the links
+        r_3_r0_y = c_3*r_4_t_2 + r_3_x*s_3
+        # (rrrrrr-V4) from joint 2 to the connection point, along the links
+        r_2_x = rrrrrr_joint3_offset_x + c_3*r_3_x - r_4_t_2*s_3
+        # (rrrrrr-K4) cosine of the angle of joint 2 from its reference direction
+        c_2_t = sin(q_2)
+        # (rrrrrr-K5) sine of the angle of joint 2 from its reference direction
+        s_2 = cos(q_2)
+        # (rrrrrr-V4) from joint 2 to the connection point, along the links
+        r_2_r0_x = -c_2_t*r_2_x - r_3_r0_y*s_2
+        # (rrrrrr-V5) from joint 1 to the connection point, along the links
+        r_1_z = rrrrrr_joint2_offset_x + r_2_x*s_2 - c_2_t*r_3_r0_y
+        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
+        e_1_r2_x = c_3*s_2 - c_2_t*s_3
+        e_1_r2_y = -c_2_t*c_3 - s_2*s_3
+        v_1_t = c_4_t*e_1_r2_y
+        v_1_t_2 = e_1_r2_y*s_4
+        e_1_r6_x = c_5_t*v_1_t_2 + e_1_r2_x*s_5
+        e_1_r6_y = s_5*v_1_t_2 - c_5_t*e_1_r2_x
+        # (rrrrrr-V5) from joint 1 to the connection point, along the links
+        r_1_r1_x = r_1_z*s_2 - c_2_t*r_2_r0_x
+        r_1_r1_y = -c_2_t*r_1_z - r_2_r0_x*s_2
+        r_1_r2_x = c_3*r_1_r1_x + r_1_r1_y*s_3
+        r_1_r2_y = c_3*r_1_r1_y - r_1_r1_x*s_3
+        r_1_t = r_4_t_3*s_4
+        r_1_r4_x = r_1_t - c_4_t*r_1_r2_y
+        r_1_t_2 = c_4_t*r_4_t_3
+        r_1_r4_y = -r_1_t_2 - r_1_r2_y*s_4
+        r_1_r6_x = r_1_r2_x*s_5 - c_5_t*r_1_r4_y
+        r_1_r6_y = -c_5_t*r_1_r2_x - r_1_r4_y*s_5
+        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
+        v_1_x = e_1_r6_y*r_1_r4_x + r_1_r6_y*v_1_t
+        v_1_y = -e_1_r6_x*r_1_r4_x - r_1_r6_x*v_1_t
+        v_1_z = e_1_r6_x*r_1_r6_y - e_1_r6_y*r_1_r6_x
+        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
+        v_2_t = c_4_t*c_5_t
+        v_2_t_2 = c_4_t*s_5
+        # (rrrrrr-V4) from joint 2 to the connection point, along the links
+        r_2_r0_x_2 = c_3*r_2_x + r_3_r0_y*s_3
+        r_2_r0_y = c_3*r_3_r0_y - r_2_x*s_3
+        r_2_r2_x = r_1_t - c_4_t*r_2_r0_y
+        r_2_r2_y = -r_1_t_2 - r_2_r0_y*s_4
+        r_2_r4_x = r_2_r0_x_2*s_5 - c_5_t*r_2_r2_y
+        r_2_r4_y = -c_5_t*r_2_r0_x_2 - r_2_r2_y*s_5
+        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
+        v_2_x = r_2_r2_x*v_2_t_2 - r_2_r4_y*s_4
+        v_2_y = r_2_r4_x*s_4 - r_2_r2_x*v_2_t
+        v_2_z = r_2_r4_y*v_2_t - r_2_r4_x*v_2_t_2
+        # (rrrrrr-V3) from joint 3 to the connection point, along the links
+        r_3_r1_x = r_1_t - c_4_t*r_4_t_2
+        r_3_r1_y = -r_1_t_2 - r_4_t_2*s_4
+        r_3_r3_x = r_3_x*s_5 - c_5_t*r_3_r1_y
+        r_3_r3_y = -c_5_t*r_3_x - r_3_r1_y*s_5
+        # (rrrrrr-V8) velocity of the connection point per rate of joint 3
+        v_3_x = r_3_r1_x*v_2_t_2 - r_3_r3_y*s_4
+        v_3_y = r_3_r3_x*s_4 - r_3_r1_x*v_2_t
+        v_3_z = r_3_r3_y*v_2_t - r_3_r3_x*v_2_t_2
+        # (rrrrrr-V9) velocity of the connection point per rate of joint 4
+        v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
+        # (rrrrrr-V13) force part of reciprocal wrench 1
+        w_1_t = c_4_t*s_3
+        w_1_t_2 = c_3*c_4_t
+        axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_2 - c_2_t*w_1_t
+        axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_2 + s_2*w_1_t
+        # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
+        c_1_t = sin(q_1)
+        # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
+        s_1 = cos(q_1)
+        # (rrrrrr-V13) force part of reciprocal wrench 1
+        axis_z_rrrrrr_axes5_r7_x = -axis_z_rrrrrr_axes5_r5_x*s_1 - c_1_t*s_4
+        axis_z_rrrrrr_axes5_r7_y = s_1*s_4 - axis_z_rrrrrr_axes5_r5_x*c_1_t
+        axis_z_rrrrrr_axes5_in_base_x = (
+        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx +
+            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy +
+            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
+        )
+        axis_z_rrrrrr_axes5_in_base_y = (
+        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx +
+            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy +
+            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
+        )
+        axis_z_rrrrrr_axes5_in_base_z = (
+        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx +
+            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy +
+            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
+        )
+        w_1_t_3 = s_4*s_5
+        axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_3
+        axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_3 - c_5_t*s_3
+        axis_y_rrrrrr_axes5_r5_x = -axis_y_rrrrrr_axes5_r4_x*c_2_t - axis_y_rrrrrr_axes5_r4_y*s_2
+        axis_y_rrrrrr_axes5_r5_y = axis_y_rrrrrr_axes5_r4_x*s_2 - axis_y_rrrrrr_axes5_r4_y*c_2_t
+        axis_y_rrrrrr_axes5_r7_x = -axis_y_rrrrrr_axes5_r5_x*s_1 - c_1_t*v_2_t_2
+        axis_y_rrrrrr_axes5_r7_y = s_1*v_2_t_2 - axis_y_rrrrrr_axes5_r5_x*c_1_t
+        axis_y_rrrrrr_axes5_in_base_x = (
+        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx +
+            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy +
+            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
+        )
+        axis_y_rrrrrr_axes5_in_base_y = (
+        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx +
+            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy +
+            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
+        )
+        axis_y_rrrrrr_axes5_in_base_z = (
+        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx +
+            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy +
+            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
+        )
+        axis_x_rrrrrr_axes5_x = (
+        axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_z -
+            axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_y
+        )
+        axis_x_rrrrrr_axes5_y = (
+        axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_x -
+            axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_z
+        )
+        axis_x_rrrrrr_axes5_z = (
+        axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_y -
+            axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_x
+        )
+        # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
+        end_p1_r0_x = (
+        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xy +
+            R_yx*rrrrrr_base_frame_yy + R_zx*rrrrrr_base_frame_zy) +
+            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xy +
+            R_yy*rrrrrr_base_frame_yy + R_zy*rrrrrr_base_frame_zy) +
+            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xy +
+            R_yz*rrrrrr_base_frame_yy + R_zz*rrrrrr_base_frame_zy)
+        )
+        end_p1_r0_y = (
+        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xz +
+            R_yx*rrrrrr_base_frame_yz + R_zx*rrrrrr_base_frame_zz) +
+            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xz +
+            R_yy*rrrrrr_base_frame_yz + R_zy*rrrrrr_base_frame_zz) +
+            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xz +
+            R_yz*rrrrrr_base_frame_yz + R_zz*rrrrrr_base_frame_zz)
+        )
+        end_p1_r0_z = (
+        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xx +
+            R_yx*rrrrrr_base_frame_yx + R_zx*rrrrrr_base_frame_zx) +
+            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xx +
+            R_yy*rrrrrr_base_frame_yx + R_zy*rrrrrr_base_frame_zx) +
+            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xx +
+            R_yz*rrrrrr_base_frame_yx + R_zz*rrrrrr_base_frame_zx)
+        )
+        end_p1_r1_x = end_p1_r0_y*s_1 - c_1_t*end_p1_r0_x
+        end_p1_r1_y = -c_1_t*end_p1_r0_y - end_p1_r0_x*s_1
+        end_p1_r3_x = end_p1_r0_z*s_2 - c_2_t*end_p1_r1_y
+        end_p1_r3_y = -c_2_t*end_p1_r0_z - end_p1_r1_y*s_2
+        end_p1_r4_x = c_3*end_p1_r3_x + end_p1_r3_y*s_3
+        end_p1_r4_y = c_3*end_p1_r3_y - end_p1_r3_x*s_3
+        end_p1_r6_x = end_p1_r1_x*s_4 - c_4_t*end_p1_r4_y
+        end_p1_r6_y = -c_4_t*end_p1_r1_x - end_p1_r4_y*s_4
+        end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
+        end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
+        # (rrrrrr-V13) force part of reciprocal wrench 1
+        w_1_t_4 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
+        w_1_t_5 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
+        w_1_t_6 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
+        w_1_t_7 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
+        w_1_t_8 = size*w_1_t_4
+        w_1_t_9 = size*w_1_t_6
+        w_1_t_10 = size*w_1_t_5
+        w_1_t_11 = size*w_1_t_7
+        w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
+        w_1_t_13 = c_5_t*end_p1_r6_x*size
+        w_1_t_14 = end_p1_r8_y*size
+        w_1_t_15 = sqrt(size_t + w_1_t_14*w_1_t_14)
+        inv_w_1_t_69 = 1.0/w_1_t_15
+        w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
+        w_1_t_17 = inv_w_1_t_69*w_1_t_14
+        w_1_t_18 = w_1_t_13*w_1_t_17
+        w_1_t_19 = w_1_t_16*w_1_t_18
+        w_1_t_20 = w_1_t_13 - w_1_t_17*w_1_t_18
+        w_1_t_21 = v_1_y*w_1_t_16 - w_1_t_17*w_1_t_9
+        w_1_t_22 = v_1_y - w_1_t_16*w_1_t_21
+        w_1_t_23 = w_1_t_9 + w_1_t_17*w_1_t_21
+        w_1_t_24 = w_1_t_11*w_1_t_17
+        w_1_t_25 = v_2_y*w_1_t_16 - w_1_t_24
+        w_1_t_26 = v_2_y - w_1_t_16*w_1_t_25
+        w_1_t_27 = w_1_t_11 + w_1_t_17*w_1_t_25
+        w_1_t_28 = w_1_t_24 - v_3_y*w_1_t_16
+        w_1_t_29 = v_3_y + w_1_t_16*w_1_t_28
+        w_1_t_30 = w_1_t_11 - w_1_t_17*w_1_t_28
+        w_1_t_31 = sqrt(v_4_z*v_4_z + w_1_t_12*w_1_t_12 + w_1_t_19*w_1_t_19 + w_1_t_20*w_1_t_20)
+        inv_w_1_t_101 = 1.0/w_1_t_31
+        w_1_t_32 = inv_w_1_t_101*w_1_t_19
+        w_1_t_33 = inv_w_1_t_101*v_4_z
+        w_1_t_34 = inv_w_1_t_101*w_1_t_12
+        w_1_t_35 = inv_w_1_t_101*w_1_t_20
+        w_1_t_36 = w_1_t_22*w_1_t_32 + w_1_t_23*w_1_t_35 + w_1_t_34*w_1_t_8 - v_1_z*w_1_t_33
+        w_1_t_37 = w_1_t_32*w_1_t_36 - w_1_t_22
+        w_1_t_38 = v_1_z + w_1_t_33*w_1_t_36
+        w_1_t_39 = w_1_t_34*w_1_t_36 - w_1_t_8
+        w_1_t_40 = w_1_t_35*w_1_t_36 - w_1_t_23
+        w_1_t_41 = w_1_t_10*w_1_t_34
+        w_1_t_42 = w_1_t_41 + w_1_t_26*w_1_t_32 + w_1_t_27*w_1_t_35 - v_2_z*w_1_t_33
+        w_1_t_43 = w_1_t_32*w_1_t_42 - w_1_t_26
+        w_1_t_44 = v_2_z + w_1_t_33*w_1_t_42
+        w_1_t_45 = w_1_t_34*w_1_t_42 - w_1_t_10
+        w_1_t_46 = w_1_t_35*w_1_t_42 - w_1_t_27
+        w_1_t_47 = w_1_t_41 + w_1_t_29*w_1_t_32 + w_1_t_30*w_1_t_35 - v_3_z*w_1_t_33
+        w_1_t_48 = w_1_t_32*w_1_t_47 - w_1_t_29
+        w_1_t_49 = v_3_z + w_1_t_33*w_1_t_47
+        w_1_t_50 = w_1_t_34*w_1_t_47 - w_1_t_10
+        w_1_t_51 = w_1_t_35*w_1_t_47 - w_1_t_30
+        w_1_t_52 = (
+        sqrt(v_1_x*v_1_x + w_1_t_37*w_1_t_37 + w_1_t_38*w_1_t_38 + w_1_t_39*w_1_t_39 +
+            w_1_t_40*w_1_t_40)
+        )
+        inv_w_1_t_150 = 1.0/w_1_t_52
+        w_1_t_53 = inv_w_1_t_150*v_1_x
+        w_1_t_54 = inv_w_1_t_150*w_1_t_37
+        w_1_t_55 = inv_w_1_t_150*w_1_t_38
+        w_1_t_56 = inv_w_1_t_150*w_1_t_39
+        w_1_t_57 = inv_w_1_t_150*w_1_t_40
+        w_1_t_58 = (
+        v_2_x*w_1_t_53 + w_1_t_43*w_1_t_54 + w_1_t_44*w_1_t_55 + w_1_t_45*w_1_t_56 +
+            w_1_t_46*w_1_t_57
+        )
+        w_1_t_59 = v_2_x - w_1_t_53*w_1_t_58
+        w_1_t_60 = w_1_t_43 - w_1_t_54*w_1_t_58
+        w_1_t_61 = w_1_t_44 - w_1_t_55*w_1_t_58
+        w_1_t_62 = w_1_t_45 - w_1_t_56*w_1_t_58
+        w_1_t_63 = w_1_t_46 - w_1_t_57*w_1_t_58
+        w_1_t_64 = (
+        v_3_x*w_1_t_53 + w_1_t_48*w_1_t_54 + w_1_t_49*w_1_t_55 + w_1_t_50*w_1_t_56 +
+            w_1_t_51*w_1_t_57
+        )
+        w_1_t_65 = v_3_x - w_1_t_53*w_1_t_64
+        w_1_t_66 = w_1_t_48 - w_1_t_54*w_1_t_64
+        w_1_t_67 = w_1_t_49 - w_1_t_55*w_1_t_64
+        w_1_t_68 = w_1_t_50 - w_1_t_56*w_1_t_64
+        w_1_t_69 = w_1_t_51 - w_1_t_57*w_1_t_64
+        w_1_t_70 = (
+        sqrt(w_1_t_59*w_1_t_59 + w_1_t_60*w_1_t_60 + w_1_t_61*w_1_t_61 + w_1_t_62*w_1_t_62 +
+            w_1_t_63*w_1_t_63)
+        )
+        inv_w_1_t_194 = 1.0/w_1_t_70
+        w_1_t_71 = inv_w_1_t_194*w_1_t_59
+        w_1_t_72 = inv_w_1_t_194*w_1_t_60
+        w_1_t_73 = inv_w_1_t_194*w_1_t_61
+        w_1_t_74 = inv_w_1_t_194*w_1_t_62
+        w_1_t_75 = inv_w_1_t_194*w_1_t_63
+        w_1_t_76 = (
+        w_1_t_65*w_1_t_71 + w_1_t_66*w_1_t_72 + w_1_t_67*w_1_t_73 + w_1_t_68*w_1_t_74 +
+            w_1_t_69*w_1_t_75
+        )
+        w_1_t_77 = w_1_t_65 - w_1_t_71*w_1_t_76
+        w_1_t_78 = w_1_t_66 - w_1_t_72*w_1_t_76
+        w_1_t_79 = w_1_t_67 - w_1_t_73*w_1_t_76
+        w_1_t_80 = w_1_t_68 - w_1_t_74*w_1_t_76
+        w_1_t_81 = w_1_t_69 - w_1_t_75*w_1_t_76
+        w_1_t_82 = (
+        sqrt(w_1_t_77*w_1_t_77 + w_1_t_78*w_1_t_78 + w_1_t_79*w_1_t_79 + w_1_t_80*w_1_t_80 +
+            w_1_t_81*w_1_t_81)
+        )
+        inv_w_1_t_222 = 1.0/w_1_t_82
+        w_1_t_83 = inv_w_1_t_222*w_1_t_77
+        w_1_t_84 = inv_w_1_t_222*w_1_t_78
+        w_1_t_85 = inv_w_1_t_222*w_1_t_79
+        w_1_t_86 = inv_w_1_t_222*w_1_t_80
+        w_1_t_87 = inv_w_1_t_222*w_1_t_81
+        # (M2) coupling block of M
+        q_in_base_x = (
+        R_xx*rrrrrr_platform_point_x + R_xy*rrrrrr_platform_point_y + R_xz*rrrrrr_platform_point_z
+        )
+        q_in_base_y = (
+        R_yx*rrrrrr_platform_point_x + R_yy*rrrrrr_platform_point_y + R_yz*rrrrrr_platform_point_z
+        )
+        q_in_base_z = (
+        R_zx*rrrrrr_platform_point_x + R_zy*rrrrrr_platform_point_y + R_zz*rrrrrr_platform_point_z
+        )
+        # (rrrrrr-V1) velocity of the connection point
+        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
+        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
+        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
+        S_dot_x = S_dot_t + t_dot_x
+        S_dot_y = S_dot_t_2 + t_dot_y
+        S_dot_z = S_dot_t_3 + t_dot_z
+        # (rrrrrr-V33) rate at which the joints turn along moment direction 1
+        eta_1 = (
+        omega_x*(axis_y_rrrrrr_axes5_in_base_x*end_p1_r8_x - axis_x_rrrrrr_axes5_x*end_p1_r8_y) +
+            omega_y*(axis_y_rrrrrr_axes5_in_base_y*end_p1_r8_x -
+            axis_x_rrrrrr_axes5_y*end_p1_r8_y) +
+            omega_z*(axis_y_rrrrrr_axes5_in_base_z*end_p1_r8_x -
+            axis_x_rrrrrr_axes5_z*end_p1_r8_y)
+        )
+        # (rrrrrr-V34) rate at which the joints turn along moment direction 2
+        eta_2 = (
+        omega_x*(axis_z_rrrrrr_axes5_in_base_x*end_p1_r8_y -
+            axis_y_rrrrrr_axes5_in_base_x*end_p1_r6_x) +
+            omega_y*(axis_z_rrrrrr_axes5_in_base_y*end_p1_r8_y -
+            axis_y_rrrrrr_axes5_in_base_y*end_p1_r6_x) +
+            omega_z*(axis_z_rrrrrr_axes5_in_base_z*end_p1_r8_y -
+            axis_y_rrrrrr_axes5_in_base_z*end_p1_r6_x)
+        )
+        # (rrrrrr-V1) velocity of the connection point
+        S_dot_tip_x = (
+        S_dot_x*axis_x_rrrrrr_axes5_x + S_dot_y*axis_x_rrrrrr_axes5_y +
+            S_dot_z*axis_x_rrrrrr_axes5_z
+        )
+        S_dot_tip_y = (
+        S_dot_x*axis_y_rrrrrr_axes5_in_base_x + S_dot_y*axis_y_rrrrrr_axes5_in_base_y +
+            S_dot_z*axis_y_rrrrrr_axes5_in_base_z
+        )
+        S_dot_tip_z = (
+        S_dot_x*axis_z_rrrrrr_axes5_in_base_x + S_dot_y*axis_z_rrrrrr_axes5_in_base_y +
+            S_dot_z*axis_z_rrrrrr_axes5_in_base_z
+        )
+        # (rrrrrr-V35) rate of joint 1
+        qd_1_t = eta_1*size
+        qd_1_t_2 = eta_2*size
+        qd_1_t_3 = (
+        inv_w_1_t_222*(S_dot_tip_x*w_1_t_83 + S_dot_tip_z*w_1_t_85 + qd_1_t*w_1_t_86 +
+            qd_1_t_2*w_1_t_87 - S_dot_tip_y*w_1_t_84)
+        )
+        qd_1_t_4 = (
+        inv_w_1_t_194*(S_dot_tip_x*w_1_t_71 + S_dot_tip_z*w_1_t_73 + qd_1_t*w_1_t_74 +
+            qd_1_t_2*w_1_t_75 - S_dot_tip_y*w_1_t_72 - qd_1_t_3*w_1_t_76)
+        )
+        qd_1_t_5 = (
+        inv_w_1_t_150*(S_dot_tip_y*w_1_t_54 + qd_1_t_3*w_1_t_64 + qd_1_t_4*w_1_t_58 -
+            S_dot_tip_x*w_1_t_53 - S_dot_tip_z*w_1_t_55 - qd_1_t*w_1_t_56 - qd_1_t_2*w_1_t_57)
+        )
+        qd_1_t_6 = (
+        inv_w_1_t_101*(S_dot_tip_z*w_1_t_33 + qd_1_t*w_1_t_34 + qd_1_t_2*w_1_t_35 +
+            qd_1_t_3*w_1_t_47 + qd_1_t_4*w_1_t_42 - S_dot_tip_y*w_1_t_32 - qd_1_t_5*w_1_t_36)
+        )
+        qd_1_t_7 = (
+        inv_w_1_t_69*(S_dot_tip_y*w_1_t_16 + qd_1_t_2*w_1_t_17 + qd_1_t_3*w_1_t_28 +
+            qd_1_t_5*w_1_t_21 - qd_1_t_4*w_1_t_25 - qd_1_t_6*w_1_t_18)
+        )
+        # (rrrrrr-V40) angular velocity of link 1
+        omega_1_t = qd_1_t_5*s_2
+        omega_1_t_2 = c_2_t*qd_1_t_5
+        # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
+        zeta_2_x = omega_1_t_2*qd_1_t_4
+        zeta_2_y = omega_1_t*qd_1_t_4
+        # (rrrrrr-V42) angular velocity of link 2
+        omega_2_r0_x = omega_1_t_2*s_3 - c_3*omega_1_t
+        omega_2_r0_y = c_3*omega_1_t_2 + omega_1_t*s_3
+        # (rrrrrr-A5) angular acceleration of link 3 from the turning of axis 3
+        zeta_3_x = omega_2_r0_y*qd_1_t_3
+        zeta_3_y = omega_2_r0_x*qd_1_t_3
+        # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
+        zeta_2_r0_x = c_3*zeta_2_x + s_3*zeta_2_y
+        zeta_2_r0_y = c_3*zeta_2_y - s_3*zeta_2_x
+        # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
+        beta_3_x = zeta_2_r0_x + zeta_3_x
+        beta_3_y = zeta_2_r0_y - zeta_3_y
+        # (rrrrrr-V44) angular velocity of link 3
+        omega_3_z = qd_1_t_3 + qd_1_t_4
+        omega_3_r1_x = omega_3_z*s_4 - c_4_t*omega_2_r0_y
+        omega_3_r1_y = -c_4_t*omega_3_z - omega_2_r0_y*s_4
+        # (rrrrrr-A7) angular acceleration of link 4 from the turning of axis 4
+        zeta_4_x = omega_3_r1_y*qd_1_t_6
+        zeta_4_y = omega_3_r1_x*qd_1_t_6
+        # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
+        beta_3_t = beta_3_y*c_4_t
+        beta_3_t_2 = beta_3_y*s_4
+        # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
+        beta_4_x = zeta_4_x - beta_3_t
+        beta_4_y = -beta_3_t_2 - zeta_4_y
+        # (rrrrrr-V46) angular velocity of link 4
+        omega_4_z = omega_2_r0_x + qd_1_t_6
+        omega_4_t = c_5_t*omega_3_r1_y
+        omega_4_r1_x = omega_4_z*s_5 - omega_4_t
+        omega_4_t_2 = omega_3_r1_y*s_5
+        omega_4_r1_y = -omega_4_t_2 - c_5_t*omega_4_z
+        # (rrrrrr-A9) angular acceleration of link 5 from the turning of axis 5
+        zeta_5_x = omega_4_r1_y*qd_1_t_7
+        zeta_5_y = omega_4_r1_x*qd_1_t_7
+        # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
+        beta_4_t = beta_3_x*s_5
+        beta_4_r1_x = beta_4_t - beta_4_y*c_5_t
+        beta_4_t_2 = beta_3_x*c_5_t
+        beta_4_r1_y = -beta_4_t_2 - beta_4_y*s_5
+        # (rrrrrr-A10) angular acceleration of link 5 at zero joint accelerations
+        beta_5_x = beta_4_r1_x + zeta_5_x
+        beta_5_y = beta_4_r1_y - zeta_5_y
+        # (rrrrrr-V48) angular velocity of link 5
+        omega_5_z = omega_3_r1_x + qd_1_t_7
+        # (rrrrrr-A14) rate of moment direction 1
+        nd_m1_t = end_p1_r8_y*omega_4_r1_y
+        omega_tip_x = (
+        axis_x_rrrrrr_axes5_x*omega_x + axis_x_rrrrrr_axes5_y*omega_y +
+            axis_x_rrrrrr_axes5_z*omega_z
+        )
+        omega_tip_y = (
+        axis_y_rrrrrr_axes5_in_base_x*omega_x + axis_y_rrrrrr_axes5_in_base_y*omega_y +
+            axis_y_rrrrrr_axes5_in_base_z*omega_z
+        )
+        omega_tip_z = (
+        axis_z_rrrrrr_axes5_in_base_x*omega_x + axis_z_rrrrrr_axes5_in_base_y*omega_y +
+            axis_z_rrrrrr_axes5_in_base_z*omega_z
+        )
+        nd_m1_t_2 = end_p1_r8_x*omega_tip_z - end_p1_r6_x*omega_tip_x
+        nd_m1_x = -nd_m1_t_2 - end_p1_r6_x*omega_4_r1_x
+        nd_m1_y = end_p1_r6_x*omega_tip_y - end_p1_r6_x*omega_4_r1_y - end_p1_r8_y*omega_tip_z
+        # (rrrrrr-A15) bias of the angular acceleration along moment direction 1
+        nu_1_t = beta_5_x*end_p1_r8_y - beta_5_y*end_p1_r8_x
+        nu_1_t_2 = omega_4_r1_x - omega_tip_x
+        nu_1_t_3 = omega_4_r1_y - omega_tip_y
+        nu_1_t_4 = omega_5_z - omega_tip_z
+        nu_1_t_5 = (
+        nd_m1_x*nu_1_t_2 + nd_m1_y*nu_1_t_3 + nu_1_t_4*(nd_m1_t + end_p1_r8_x*omega_4_r1_x)
+        )
+        nu_1 = nu_1_t - nu_1_t_5
+        # (rrrrrr-A16) rate of moment direction 2
+        nd_m2_y = end_p1_r8_x*omega_tip_y - end_p1_r8_x*omega_4_r1_y - end_p1_r8_y*omega_tip_x
+        nd_m2_z = nd_m1_t_2 - end_p1_r8_x*omega_5_z
+        # (rrrrrr-A17) bias of the angular acceleration along moment direction 2
+        nu_2_t = beta_5_y*end_p1_r6_x - beta_4_x*end_p1_r8_y
+        nu_2_t_2 = (
+        nd_m2_y*nu_1_t_3 + nd_m2_z*nu_1_t_4 + nu_1_t_2*(nd_m1_t + end_p1_r6_x*omega_5_z)
+        )
+        nu_2 = nu_2_t - nu_2_t_2
+        # (rrrrrr-V43) centripetal tensor of link 2
+        W_2_t = omega_1_t*omega_1_t
+        W_2_t_2 = omega_1_t_2*omega_1_t_2
+        W_2_t_3 = qd_1_t_4*qd_1_t_4
+        W_2_xy = omega_1_t*omega_1_t_2
+        # (rrrrrr-V45) centripetal tensor of link 3
+        W_3_t = omega_2_r0_x*omega_2_r0_x
+        W_3_t_2 = omega_2_r0_y*omega_2_r0_y
+        W_3_t_3 = omega_3_z*omega_3_z
+        W_3_xx = W_3_t_2 + W_3_t_3
+        W_3_xy = omega_2_r0_x*omega_2_r0_y
+        W_3_xz = omega_2_r0_x*omega_3_z
+        W_3_yz = omega_2_r0_y*omega_3_z
+        # (rrrrrr-V47) centripetal tensor of link 4
+        W_4_t = omega_3_r1_x*omega_3_r1_x
+        W_4_t_2 = omega_3_r1_y*omega_3_r1_y
+        W_4_t_3 = omega_4_z*omega_4_z
+        W_4_xy = omega_3_r1_x*omega_3_r1_y
+        W_4_xz = omega_3_r1_x*omega_4_z
+        W_4_yz = omega_3_r1_y*omega_4_z
+        # (rrrrrr-V49) centripetal tensor of link 5
+        W_5_t = omega_4_r1_x*omega_4_r1_x
+        W_5_t_2 = omega_4_r1_y*omega_4_r1_y
+        W_5_t_3 = omega_5_z*omega_5_z
+        W_5_xx = W_5_t_2 + W_5_t_3
+        W_5_xy = omega_4_r1_x*omega_4_r1_y
+        W_5_xz = omega_4_r1_x*omega_5_z
+        W_5_yz = omega_4_r1_y*omega_5_z
+        # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
+        bias_t = rrrrrr_joint2_offset_x*s_2
+        bias_t_2 = c_2_t*rrrrrr_joint2_offset_x
+        d_2_r2_x = bias_t*c_3 - bias_t_2*s_3
+        d_2_r2_y = -bias_t*s_3 - bias_t_2*c_3
+        bias_t_3 = c_4_t*d_2_r2_y
+        bias_t_4 = d_2_r2_y*s_4
+        d_2_r6_x = bias_t_4*c_5_t + d_2_r2_x*s_5
+        d_2_r6_y = bias_t_4*s_5 - c_5_t*d_2_r2_x
+        # (rrrrrr-V40) angular velocity of link 1
+        omega_1_x = e_1_r6_x*qd_1_t_5
+        omega_1_y = e_1_r6_y*qd_1_t_5
+        omega_1_z = qd_1_t_5*v_1_t
+        # (rrrrrr-V41) centripetal tensor of link 1
+        W_1_t = omega_1_x*omega_1_x
+        W_1_t_2 = omega_1_y*omega_1_y
+        W_1_t_3 = omega_1_z*omega_1_z
+        W_1_xy = omega_1_x*omega_1_y
+        W_1_xz = omega_1_x*omega_1_z
+        W_1_yz = omega_1_y*omega_1_z
+        # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
+        bias_t_5 = c_3*rrrrrr_joint3_offset_x
+        bias_t_6 = rrrrrr_joint3_offset_x*s_3
+        bias_t_7 = bias_t_6*c_4_t
+        bias_t_8 = bias_t_6*s_4
+        d_3_r4_x = bias_t_5*s_5 - bias_t_8*c_5_t
+        d_3_r4_y = -bias_t_5*c_5_t - bias_t_8*s_5
+        # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
+        zeta_2_t = c_4_t*zeta_2_r0_y
+        zeta_2_t_2 = s_4*zeta_2_r0_y
+        zeta_2_r4_x = c_5_t*zeta_2_t_2 + s_5*zeta_2_r0_x
+        zeta_2_r4_y = s_5*zeta_2_t_2 - c_5_t*zeta_2_r0_x
+        # (rrrrrr-V42) angular velocity of link 2
+        omega_2_x = qd_1_t_4*v_2_t - omega_1_x
+        omega_2_y = qd_1_t_4*v_2_t_2 - omega_1_y
+        omega_2_z = omega_1_z + qd_1_t_4*s_4
+        # (rrrrrr-V43) centripetal tensor of link 2
+        W_2_t_4 = omega_2_x*omega_2_x
+        W_2_t_5 = omega_2_y*omega_2_y
+        W_2_t_6 = omega_2_z*omega_2_z
+        W_2_xy_2 = omega_2_x*omega_2_y
+        W_2_xz = omega_2_x*omega_2_z
+        W_2_yz = omega_2_y*omega_2_z
+        # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
+        bias_t_9 = rrrrrr_joint4_offset_x*s_5
+        bias_t_10 = c_5_t*rrrrrr_joint4_offset_x
+        # (rrrrrr-V44) angular velocity of link 3
+        omega_3_r3_x = omega_2_r0_x*s_5 - omega_4_t
+        omega_3_r3_y = -omega_4_t_2 - c_5_t*omega_2_r0_x
+        # (rrrrrr-V45) centripetal tensor of link 3
+        W_3_xy_2 = omega_3_r3_x*omega_3_r3_y
+        # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
+        bias_t_11 = rrrrrr_joint5_offset_x*s_5
+        bias_t_12 = c_5_t*rrrrrr_joint5_offset_x
+        bias_t_13 = W_5_xy + beta_4_x
+        bias_x = (
+        W_1_xy*d_2_r6_y + W_1_xz*bias_t_3 + bias_t_7*(W_2_xz + zeta_2_r4_y) + d_3_r4_y*(W_2_xy_2 +
+            zeta_2_t) - W_5_xx*rrrrrr_platform_joint_offset_x - bias_t_10*(W_3_xy_2 + beta_3_t) -
+            bias_t_11*(W_4_t + W_5_t_2) - bias_t_12*(W_5_xy - beta_4_x) - bias_t_9*(W_4_t +
+            omega_3_r3_y*omega_3_r3_y) - d_2_r6_x*(W_1_t_2 + W_1_t_3) - d_3_r4_x*(W_2_t_5 +
+            W_2_t_6)
+        )
+        bias_y = (
+        W_1_xy*d_2_r6_x + W_1_yz*bias_t_3 + bias_t_10*(W_4_t + omega_3_r3_x*omega_3_r3_x) +
+            bias_t_11*bias_t_13 + bias_t_12*(W_4_t + W_5_t) +
+            bias_t_13*rrrrrr_platform_joint_offset_x + bias_t_7*(W_2_yz - zeta_2_r4_x) +
+            bias_t_9*(W_3_xy_2 - beta_3_t) + d_3_r4_x*(W_2_xy_2 - zeta_2_t) - d_2_r6_y*(W_1_t +
+            W_1_t_3) - d_3_r4_y*(W_2_t_4 + W_2_t_6)
+        )
+        bias_z = (
+        bias_t_11*(omega_3_r1_x*omega_4_r1_x - beta_4_r1_y) + bias_t_3*(W_1_t + W_1_t_2) +
+            bias_t_9*(beta_4_t_2 + omega_3_r1_x*omega_3_r3_x - beta_3_t_2*s_5) + d_3_r4_x*(W_2_xz
+            - zeta_2_r4_y) + d_3_r4_y*(W_2_yz + zeta_2_r4_x) +
+            rrrrrr_platform_joint_offset_x*(W_5_xz - beta_5_y) - W_1_xz*d_2_r6_x - W_1_yz*d_2_r6_y
+            - bias_t_10*(beta_4_t + beta_3_t_2*c_5_t + omega_3_r1_x*omega_3_r3_y) -
+            bias_t_12*(beta_4_r1_x + omega_3_r1_x*omega_4_r1_y) - bias_t_7*(W_2_t_4 + W_2_t_5)
+        )
+        # (rrrrrr-A1) centripetal acceleration of the connection point
+        u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z
+        u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x
+        u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y
+        u_1_tip_x = (
+        axis_x_rrrrrr_axes5_x*u_1_x + axis_x_rrrrrr_axes5_y*u_1_y + axis_x_rrrrrr_axes5_z*u_1_z
+        )
+        u_1_tip_y = (
+        axis_y_rrrrrr_axes5_in_base_x*u_1_x + axis_y_rrrrrr_axes5_in_base_y*u_1_y +
+            axis_y_rrrrrr_axes5_in_base_z*u_1_z
+        )
+        u_1_tip_z = (
+        axis_z_rrrrrr_axes5_in_base_x*u_1_x + axis_z_rrrrrr_axes5_in_base_y*u_1_y +
+            axis_z_rrrrrr_axes5_in_base_z*u_1_z
+        )
+        # (rrrrrr-A13) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        rel_o_x = u_1_tip_x - bias_x
+        rel_o_y = u_1_tip_y - bias_y
+        rel_o_z = u_1_tip_z - bias_z
+        # (rrrrrr-A21) remainder without the acceleration in: acceleration of joint 1
+        qdd_1_o_t = nu_1*size
+        qdd_1_o_t_2 = nu_2*size
+        qdd_1_o_t_3 = (
+        inv_w_1_t_222*(qdd_1_o_t*w_1_t_86 + qdd_1_o_t_2*w_1_t_87 + rel_o_x*w_1_t_83 +
+            rel_o_z*w_1_t_85 - rel_o_y*w_1_t_84)
+        )
+        qdd_1_o_t_4 = (
+        inv_w_1_t_194*(qdd_1_o_t*w_1_t_74 + qdd_1_o_t_2*w_1_t_75 + rel_o_x*w_1_t_71 +
+            rel_o_z*w_1_t_73 - qdd_1_o_t_3*w_1_t_76 - rel_o_y*w_1_t_72)
+        )
+        qdd_1_o_t_5 = (
+        inv_w_1_t_150*(qdd_1_o_t_3*w_1_t_64 + qdd_1_o_t_4*w_1_t_58 + rel_o_y*w_1_t_54 -
+            qdd_1_o_t*w_1_t_56 - qdd_1_o_t_2*w_1_t_57 - rel_o_x*w_1_t_53 - rel_o_z*w_1_t_55)
+        )
+        qdd_1_o_t_6 = (
+        inv_w_1_t_101*(qdd_1_o_t*w_1_t_34 + qdd_1_o_t_2*w_1_t_35 + qdd_1_o_t_3*w_1_t_47 +
+            qdd_1_o_t_4*w_1_t_42 + rel_o_z*w_1_t_33 - qdd_1_o_t_5*w_1_t_36 - rel_o_y*w_1_t_32)
+        )
+        # (rrrrrr-A31) remainder without the acceleration in: angular acceleration of link 1
+        alpha_1_o_t = qdd_1_o_t_5*s_2
+        alpha_1_o_t_2 = c_2_t*qdd_1_o_t_5
+        # (rrrrrr-A35) remainder without the acceleration in: angular acceleration of link 2
+        alpha_2_o_x = zeta_2_x - alpha_1_o_t
+        alpha_2_o_y = alpha_1_o_t_2 + zeta_2_y
+        # (rrrrrr-A37) remainder of the acceleration tensor of link 2
+        B_2_o_xy = -W_2_xy - qdd_1_o_t_4
+        B_2_o_yx = qdd_1_o_t_4 - W_2_xy
+        B_2_o_zx = -alpha_2_o_y - zeta_2_y
+        B_2_o_zy = alpha_2_o_x + zeta_2_x
+        # (rrrrrr-A55) remainder without the acceleration in: acceleration of the origin of joint 3
+        a_o3_o_t = rrrrrr_joint3_offset_x*(W_2_t_2 + W_2_t_3)
+        a_o3_o_t_2 = B_2_o_yx*rrrrrr_joint3_offset_x
+        a_o3_o_t_3 = B_2_o_zx*rrrrrr_joint3_offset_x
+        # (rrrrrr-A39) remainder without the acceleration in: angular acceleration of link 3
+        alpha_3_o_x = zeta_3_x + alpha_2_o_x*c_3 + alpha_2_o_y*s_3
+        alpha_3_o_y = alpha_2_o_y*c_3 - zeta_3_y - alpha_2_o_x*s_3
+        alpha_3_o_z = qdd_1_o_t_3 + qdd_1_o_t_4
+        # (rrrrrr-A41) remainder of the acceleration tensor of link 3
+        B_3_o_xy = W_3_xy - alpha_3_o_z
+        B_3_o_xz = W_3_xz + alpha_3_o_y
+        B_3_o_yx = W_3_xy + alpha_3_o_z
+        B_3_o_yz = W_3_yz - alpha_3_o_x
+        B_3_o_zx = W_3_xz - alpha_3_o_y
+        B_3_o_zy = W_3_yz + alpha_3_o_x
+        # (rrrrrr-A55) remainder without the acceleration in: acceleration of the origin of joint 3
+        a_o3_o_r0_x = a_o3_o_t_2*s_3 - a_o3_o_t*c_3
+        a_o3_o_r0_y = a_o3_o_t*s_3 + a_o3_o_t_2*c_3
+        # (rrrrrr-A57) remainder without the acceleration in: acceleration of the origin of joint 4
+        a_o4_o_x = a_o3_o_r0_x - W_3_xx*rrrrrr_joint4_offset_x
+        a_o4_o_y = a_o3_o_r0_y + B_3_o_yx*rrrrrr_joint4_offset_x
+        a_o4_o_z = a_o3_o_t_3 + B_3_o_zx*rrrrrr_joint4_offset_x
+        # (rrrrrr-N16) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
+        g_r1_x = g_r0_y*s_1 - c_1_t*g_r0_x
+        g_r1_y = -c_1_t*g_r0_y - g_r0_x*s_1
+        g_r3_x = g_r0_z*s_2 - c_2_t*g_r1_y
+        g_r3_y = -c_2_t*g_r0_z - g_r1_y*s_2
+        g_r4_x = c_3*g_r3_x + g_r3_y*s_3
+        g_r4_y = c_3*g_r3_y - g_r3_x*s_3
+        g_r6_x = g_r1_x*s_4 - c_4_t*g_r4_y
+        g_r6_y = -c_4_t*g_r1_x - g_r4_y*s_4
+        acc_4_o_x = a_o4_o_z*s_4 - g_r6_x - a_o4_o_y*c_4_t
+        acc_4_o_y = -g_r6_y - a_o4_o_y*s_4 - a_o4_o_z*c_4_t
+        acc_4_o_z = a_o4_o_x - g_r4_x
+        # (rrrrrr-A43) remainder without the acceleration in: angular acceleration of link 4
+        alpha_4_o_x = zeta_4_x + alpha_3_o_z*s_4 - alpha_3_o_y*c_4_t
+        alpha_4_o_y = -zeta_4_y - alpha_3_o_y*s_4 - alpha_3_o_z*c_4_t
+        alpha_4_o_z = alpha_3_o_x + qdd_1_o_t_6
+        # (rrrrrr-A45) remainder of the acceleration tensor of link 4
+        B_4_o_xy = W_4_xy - alpha_4_o_z
+        B_4_o_xz = W_4_xz + alpha_4_o_y
+        B_4_o_yx = W_4_xy + alpha_4_o_z
+        B_4_o_yz = W_4_yz - alpha_4_o_x
+        B_4_o_zx = W_4_xz - alpha_4_o_y
+        B_4_o_zy = W_4_yz + alpha_4_o_x
+        # (rrrrrr-N73) remainder without the acceleration in: inertia moment of the links that turn with link 4, about their reference points
+        mu_4_o_x = (
+        B_4_o_yx*J_4_xz + B_4_o_zx*J_4_yz + B_4_o_zy*Sigma_4_yy - B_4_o_yz*Sigma_4_zz -
+            J_4_xy*(W_4_t_2 - W_4_t_3) - acc_4_o_y*h_4_x - acc_4_o_z*h_4_y
+        )
+        mu_4_o_y = (
+        B_4_o_xy*J_4_xy + B_4_o_xz*Sigma_4_zz + acc_4_o_x*h_4_x - B_4_o_zx*Sigma_4_xx -
+            B_4_o_zy*J_4_yz - J_4_xz*(W_4_t - W_4_t_3) - acc_4_o_z*h_4_z
+        )
+        mu_4_o_z = (
+        B_4_o_yx*Sigma_4_xx + acc_4_o_x*h_4_y + acc_4_o_y*h_4_z - B_4_o_xy*Sigma_4_yy -
+            B_4_o_xz*J_4_xy - B_4_o_yz*J_4_xz - J_4_yz*(W_4_t - W_4_t_2)
+        )
+        # (rrrrrr-N22) remainder without the acceleration in: acceleration of the reference point of link 5, less gravity
+        acc_5_o_x = u_1_tip_x + c_5_t*g_r6_y - g_r4_x*s_5
+        acc_5_o_y = u_1_tip_y + c_5_t*g_r4_x + g_r6_y*s_5
+        acc_5_o_z = u_1_tip_z - g_r6_x
+        # (rrrrrr-A49) remainder without the acceleration in: angular acceleration of link 5
+        alpha_5_o_x = zeta_5_x + alpha_4_o_z*s_5 - alpha_4_o_y*c_5_t
+        alpha_5_o_y = -zeta_5_y - alpha_4_o_y*s_5 - alpha_4_o_z*c_5_t
+        alpha_5_o_z = (
+        alpha_4_o_x + inv_w_1_t_69*(qdd_1_o_t_2*w_1_t_17 + qdd_1_o_t_3*w_1_t_28 +
+            qdd_1_o_t_5*w_1_t_21 + rel_o_y*w_1_t_16 - qdd_1_o_t_4*w_1_t_25 - qdd_1_o_t_6*w_1_t_18)
+        )
+        # (rrrrrr-A51) remainder of the acceleration tensor of link 5
+        B_5_o_xy = W_5_xy - alpha_5_o_z
+        B_5_o_xz = W_5_xz + alpha_5_o_y
+        B_5_o_yx = W_5_xy + alpha_5_o_z
+        B_5_o_yz = W_5_yz - alpha_5_o_x
+        B_5_o_zx = W_5_xz - alpha_5_o_y
+        B_5_o_zy = W_5_yz + alpha_5_o_x
+        # (rrrrrr-N65) remainder without the acceleration in: inertia moment of the links that turn with link 5, about their reference points
+        mu_5_o_x = (
+        B_5_o_yx*J_5_xz + B_5_o_zy*Sigma_5_yy + J_5_yz*(W_5_t_2 - W_5_t_3) + acc_5_o_z*h_5_y -
+            B_5_o_yz*Sigma_5_zz - B_5_o_zx*J_5_xy - acc_5_o_y*h_5_z
+        )
+        mu_5_o_y = (
+        B_5_o_xz*Sigma_5_zz + B_5_o_zy*J_5_xy + acc_5_o_x*h_5_z - B_5_o_xy*J_5_yz -
+            B_5_o_zx*Sigma_5_xx - J_5_xz*(W_5_t - W_5_t_3) - acc_5_o_z*h_5_x
+        )
+        mu_5_o_z = (
+        B_5_o_xz*J_5_yz + B_5_o_yx*Sigma_5_xx + J_5_xy*(W_5_t - W_5_t_2) + acc_5_o_y*h_5_x -
+            B_5_o_xy*Sigma_5_yy - B_5_o_yz*J_5_xz - acc_5_o_x*h_5_y
+        )
+        # (rrrrrr-N75) remainder without the acceleration in: moment about joint 4 of the links from 4 outwards, the force at the connection point left out
+        N_4_o_x = mu_4_o_x + mu_5_o_z
+        N_4_o_y = mu_4_o_y - c_5_t*mu_5_o_x - mu_5_o_y*s_5
+        N_4_o_z = mu_4_o_z + mu_5_o_x*s_5 - c_5_t*mu_5_o_y
+        # (rrrrrr-N20) remainder without the acceleration in: inertia force of link 4 less its weight
+        f_4_o_x = (
+        B_4_o_xz*h_4_x + acc_4_o_x*rrrrrr_link4_mass - B_4_o_xy*h_4_y - h_4_z*(W_4_t_2 + W_4_t_3)
+        )
+        f_4_o_y = (
+        B_4_o_yx*h_4_z + B_4_o_yz*h_4_x + acc_4_o_y*rrrrrr_link4_mass + h_4_y*(W_4_t + W_4_t_3)
+        )
+        f_4_o_z = (
+        B_4_o_zx*h_4_z + acc_4_o_z*rrrrrr_link4_mass - B_4_o_zy*h_4_y - h_4_x*(W_4_t + W_4_t_2)
+        )
+        # (rrrrrr-N10) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        acc_3_o_x = a_o3_o_r0_x - g_r4_x
+        acc_3_o_y = a_o3_o_r0_y - g_r4_y
+        acc_3_o_z = a_o3_o_t_3 - g_r1_x
+        # (rrrrrr-N83) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        mu_3_o_x = (
+        B_3_o_yx*J_3_xz + B_3_o_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) + acc_3_o_z*h_3_y -
+            B_3_o_yz*Sigma_3_zz - B_3_o_zx*J_3_xy - acc_3_o_y*h_3_z
+        )
+        mu_3_o_y = (
+        B_3_o_xz*Sigma_3_zz + B_3_o_zy*J_3_xy + acc_3_o_x*h_3_z - B_3_o_xy*J_3_yz -
+            B_3_o_zx*Sigma_3_xx - J_3_xz*(W_3_t - W_3_t_3) - acc_3_o_z*h_3_x
+        )
+        mu_3_o_z = (
+        B_3_o_xz*J_3_yz + B_3_o_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + acc_3_o_y*h_3_x -
+            B_3_o_xy*Sigma_3_yy - B_3_o_yz*J_3_xz - acc_3_o_x*h_3_y
+        )
+        # (rrrrrr-N20) remainder without the acceleration in: inertia force of link 4 less its weight
+        f_4_o_r0_x = -c_4_t*f_4_o_x - f_4_o_y*s_4
+        f_4_o_r0_y = f_4_o_x*s_4 - c_4_t*f_4_o_y
+        # (rrrrrr-N85) remainder without the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
+        N_3_o_x = N_4_o_z + mu_3_o_x
+        N_3_o_y = mu_3_o_y - N_4_o_x*c_4_t - N_4_o_y*s_4 - f_4_o_r0_y*rrrrrr_joint4_offset_x
+        N_3_o_z = mu_3_o_z + N_4_o_x*s_4 + f_4_o_r0_x*rrrrrr_joint4_offset_x - N_4_o_y*c_4_t
+        # (rrrrrr-N14) remainder without the acceleration in: inertia force of link 3 less its weight
+        f_3_o_x = B_3_o_xy*h_3_y + B_3_o_xz*h_3_z + acc_3_o_x*rrrrrr_link3_mass - W_3_xx*h_3_x
+        f_3_o_y = (
+        B_3_o_yx*h_3_x + B_3_o_yz*h_3_z + acc_3_o_y*rrrrrr_link3_mass - h_3_y*(W_3_t + W_3_t_3)
+        )
+        f_3_o_z = (
+        B_3_o_zx*h_3_x + B_3_o_zy*h_3_y + acc_3_o_z*rrrrrr_link3_mass - h_3_z*(W_3_t + W_3_t_2)
+        )
+        # (rrrrrr-N87) remainder without the acceleration in: inertia force of the links from 3 outwards, the last link left out
+        T_3_o_x = f_3_o_x + f_4_o_z
+        T_3_o_y = f_3_o_y + f_4_o_r0_x
+        T_3_o_z = f_3_o_z + f_4_o_r0_y
+        # (rrrrrr-N95) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        mu_2_o_x = (
+        B_2_o_yx*J_2_xz + B_2_o_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) + g_r3_y*h_2_z -
+            B_2_o_zx*J_2_xy - Sigma_2_zz*alpha_1_o_t - g_r1_x*h_2_y
+        )
+        mu_2_o_y = (
+        B_2_o_zy*J_2_xy + Sigma_2_zz*alpha_1_o_t_2 + g_r1_x*h_2_x - B_2_o_xy*J_2_yz -
+            B_2_o_zx*Sigma_2_xx - J_2_xz*(W_2_t - W_2_t_3) - g_r3_x*h_2_z
+        )
+        mu_2_o_z = (
+        B_2_o_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + J_2_yz*alpha_1_o_t_2 + g_r3_x*h_2_y -
+            B_2_o_xy*Sigma_2_yy - J_2_xz*alpha_1_o_t - g_r3_y*h_2_x
+        )
+        # (rrrrrr-N97) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        N_2_o_x = mu_2_o_x + N_3_o_x*c_3 - N_3_o_y*s_3
+        N_2_o_y = mu_2_o_y + N_3_o_x*s_3 + N_3_o_y*c_3 - T_3_o_z*rrrrrr_joint3_offset_x
+        N_2_o_z = N_3_o_z + mu_2_o_z + rrrrrr_joint3_offset_x*(T_3_o_x*s_3 + T_3_o_y*c_3)
+        # (rrrrrr-N107) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        mu_1_o_z = -J_1_xx*qdd_1_o_t_5 - g_r1_x*h_1_y - g_r1_y*h_1_z
+        # (rrrrrr-N109) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        N_1_o_z = mu_1_o_z + N_2_o_x*s_2 - N_2_o_y*c_2_t
+        # (rrrrrr-N117) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        G_o_t = inv_w_1_t_69*mu_5_o_z
+        G_o_t_2 = inv_w_1_t_101*(G_o_t*w_1_t_18 - N_4_o_z)
+        G_o_t_3 = inv_w_1_t_150*(G_o_t*w_1_t_21 + G_o_t_2*w_1_t_36 - N_1_o_z)
+        G_o_t_4 = inv_w_1_t_194*(G_o_t*w_1_t_25 + G_o_t_2*w_1_t_42 - N_2_o_z - G_o_t_3*w_1_t_58)
+        G_o_t_5 = (
+        inv_w_1_t_222*(N_3_o_z + G_o_t*w_1_t_28 + G_o_t_3*w_1_t_64 + G_o_t_4*w_1_t_76 -
+            G_o_t_2*w_1_t_47)
+        )
+        G_o_t_6 = size*(G_o_t_2*w_1_t_34 + G_o_t_3*w_1_t_56 + G_o_t_4*w_1_t_74 - G_o_t_5*w_1_t_86)
+        G_o_t_7 = (
+        size*(G_o_t_2*w_1_t_35 + G_o_t_3*w_1_t_57 + G_o_t_4*w_1_t_75 - G_o_t*w_1_t_17 -
+            G_o_t_5*w_1_t_87)
+        )
+        # (rrrrrr-N133) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        c_o_x = (
+        G_o_t_3*w_1_t_53 + G_o_t_4*w_1_t_71 + W_5_xx*h_5_x - B_5_o_xy*h_5_y - B_5_o_xz*h_5_z -
+            G_o_t_5*w_1_t_83
+        )
+        c_o_y = (
+        G_o_t_5*w_1_t_84 + h_5_y*(W_5_t + W_5_t_3) - B_5_o_yx*h_5_x - B_5_o_yz*h_5_z -
+            G_o_t*w_1_t_16 - G_o_t_2*w_1_t_32 - G_o_t_3*w_1_t_54 - G_o_t_4*w_1_t_72
+        )
+        c_o_z = (
+        G_o_t_2*w_1_t_33 + G_o_t_3*w_1_t_55 + G_o_t_4*w_1_t_73 + h_5_z*(W_5_t + W_5_t_2) -
+            B_5_o_zx*h_5_x - B_5_o_zy*h_5_y - G_o_t_5*w_1_t_85
+        )
+        # (rrrrrr-N139) velocity and gravity terms of the leg force
+        U_in_base_x = (
+        -axis_x_rrrrrr_axes5_x*c_o_x - axis_y_rrrrrr_axes5_in_base_x*c_o_y -
+            axis_z_rrrrrr_axes5_in_base_x*c_o_z
+        )
+        U_in_base_y = (
+        -axis_x_rrrrrr_axes5_y*c_o_x - axis_y_rrrrrr_axes5_in_base_y*c_o_y -
+            axis_z_rrrrrr_axes5_in_base_y*c_o_z
+        )
+        U_in_base_z = (
+        -axis_x_rrrrrr_axes5_z*c_o_x - axis_y_rrrrrr_axes5_in_base_z*c_o_y -
+            axis_z_rrrrrr_axes5_in_base_z*c_o_z
+        )
+        # (rrrrrr-N129) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        G_m_o_t = G_o_t_6*end_p1_r8_y
+        G_m_o_t_2 = G_o_t_7*end_p1_r8_y
+        G_m_o_y = G_o_t_7*end_p1_r6_x - G_o_t_6*end_p1_r8_x
+        # (M7) rotational part of Z
+        Z_a_t = (
+        G_m_o_t*axis_x_rrrrrr_axes5_x + G_m_o_y*axis_y_rrrrrr_axes5_in_base_x +
+            U_in_base_z*q_in_base_y - G_m_o_t_2*axis_z_rrrrrr_axes5_in_base_x -
+            U_in_base_y*q_in_base_z
+        )
+        Z_a_t_2 = (
+        G_m_o_t*axis_x_rrrrrr_axes5_y + G_m_o_y*axis_y_rrrrrr_axes5_in_base_y +
+            U_in_base_x*q_in_base_z - G_m_o_t_2*axis_z_rrrrrr_axes5_in_base_y -
+            U_in_base_z*q_in_base_x
+        )
+        Z_a_t_3 = (
+        G_m_o_t*axis_x_rrrrrr_axes5_z + G_m_o_y*axis_y_rrrrrr_axes5_in_base_z +
+            U_in_base_y*q_in_base_x - G_m_o_t_2*axis_z_rrrrrr_axes5_in_base_z -
+            U_in_base_x*q_in_base_y
+        )
+        ok = (
+        ok & m.every((abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE * size) &
+            (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
+            (abs(w_1_t_82) > _TOLERANCE * size))
+        )
+        sums = m.added(sums, leg, (
+        U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,
+        ))
     (
     total_rrrrrr_x, total_rrrrrr_y, total_rrrrrr_z, total_rrrrrr_x_2, total_rrrrrr_y_2,
         total_rrrrrr_z_2,
-    ) = t
+    ) = sums
     # (M5) translational part of Z
     Z_t_x = Z_p_x + total_rrrrrr_x
     Z_t_y = Z_p_y + total_rrrrrr_y
@@ -4799,16 +5416,30 @@ def _Z_after(c, s, t, f):
     Z_a_x = Z_q_in_base_x + total_rrrrrr_x_2
     Z_a_y = Z_q_in_base_y + total_rrrrrr_y_2
     Z_a_z = Z_q_in_base_z + total_rrrrrr_z_2
-    ok = True
-    return (ok, (Z_t_x, Z_t_y, Z_t_z, Z_a_x, Z_a_y, Z_a_z,),)
+    out_Z[0] = Z_t_x
+    out_Z[1] = Z_t_y
+    out_Z[2] = Z_t_z
+    out_Z[3] = Z_a_x
+    out_Z[4] = Z_a_y
+    out_Z[5] = Z_a_z
+    return ok, (out_Z,)
 
 
 # H: 2190 mul, 1272 add, 30 div, 30 sqrt, 60 trig
-def _H_before(c, X, q, f):
+def _run_H(m, X, q):
+    sqrt = m.sqrt
+    sin = m.sin
+    cos = m.cos
+    shared, legs = m.constants("H")
     X_3 = X[3]
     X_4 = X[4]
     X_5 = X[5]
     X_6 = X[6]
+    q_1 = q[1]
+    q_2 = q[2]
+    q_3 = q[3]
+    q_4 = q[4]
+    q_5 = q[5]
     # X: named entries
     quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6
     quaternion_scale = 2.0/quaternion_norm2
@@ -4833,355 +5464,377 @@ def _H_before(c, X, q, f):
     R_zx = quaternion_xz - quaternion_wy
     R_zy = quaternion_wx + quaternion_yz
     R_zz = 1.0 - quaternion_xx - quaternion_yy
-    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    return (ok, (R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz,), (),)
-
-
-def _H_rrrrrr(c, k, x, s, f):
-    sqrt = f.sqrt
-    sin = f.sin
-    cos = f.cos
-    (
-    rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
-        rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx, rrrrrr_base_frame_zy,
-        rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x, rrrrrr_joint3_offset_x,
-        rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x, rrrrrr_platform_joint_axis_platform_x,
-        rrrrrr_platform_joint_axis_platform_y, rrrrrr_platform_joint_axis_platform_z,
-        rrrrrr_platform_joint_offset_x, rrrrrr_platform_point_x, rrrrrr_platform_point_y,
-        rrrrrr_platform_point_z, size, size_t,
-    ) = k
-    q_1, q_2, q_3, q_4, q_5 = x
-    R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
-    # (rrrrrr-K10) cosine of the angle of joint 5 from its reference direction
-    c_5_t = sin(q_5)
-    # (rrrrrr-K11) sine of the angle of joint 5 from its reference direction
-    s_5 = cos(q_5)
-    # (rrrrrr-V2) from joint 4 to the connection point, along the links
-    r_4_t = c_5_t*rrrrrr_platform_joint_offset_x
-    r_4_z = rrrrrr_joint5_offset_x + rrrrrr_platform_joint_offset_x*s_5
-    # (rrrrrr-K8) cosine of the angle of joint 4 from its reference direction
-    c_4_t = sin(q_4)
-    # (rrrrrr-K9) sine of the angle of joint 4 from its reference direction
-    s_4 = cos(q_4)
-    # (rrrrrr-V2) from joint 4 to the connection point, along the links
-    r_4_t_2 = r_4_t*s_4
-    r_4_t_3 = c_4_t*r_4_t
-    # (rrrrrr-V3) from joint 3 to the connection point, along the links
-    r_3_x = r_4_z + rrrrrr_joint4_offset_x
-    # (rrrrrr-K6) cosine of the angle of joint 3 from its reference direction
-    c_3 = cos(q_3)
-    # (rrrrrr-K7) sine of the angle of joint 3 from its reference direction
-    s_3 = sin(q_3)
-    # (rrrrrr-V3) from joint 3 to the connection point, along the links
-    r_3_r0_y = c_3*r_4_t_2 + r_3_x*s_3
-    # (rrrrrr-V4) from joint 2 to the connection point, along the links
-    r_2_x = rrrrrr_joint3_offset_x + c_3*r_3_x - r_4_t_2*s_3
-    # (rrrrrr-K4) cosine of the angle of joint 2 from its reference direction
-    c_2_t = sin(q_2)
-    # (rrrrrr-K5) sine of the angle of joint 2 from its reference direction
-    s_2 = cos(q_2)
-    # (rrrrrr-V4) from joint 2 to the connection point, along the links
-    r_2_r0_x = -c_2_t*r_2_x - r_3_r0_y*s_2
-    # (rrrrrr-V5) from joint 1 to the connection point, along the links
-    r_1_z = rrrrrr_joint2_offset_x + r_2_x*s_2 - c_2_t*r_3_r0_y
-    # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-    e_1_r2_x = c_3*s_2 - c_2_t*s_3
-    e_1_r2_y = -c_2_t*c_3 - s_2*s_3
-    v_1_t = c_4_t*e_1_r2_y
-    v_1_t_2 = e_1_r2_y*s_4
-    e_1_r6_x = c_5_t*v_1_t_2 + e_1_r2_x*s_5
-    e_1_r6_y = s_5*v_1_t_2 - c_5_t*e_1_r2_x
-    # (rrrrrr-V5) from joint 1 to the connection point, along the links
-    r_1_r1_x = r_1_z*s_2 - c_2_t*r_2_r0_x
-    r_1_r1_y = -c_2_t*r_1_z - r_2_r0_x*s_2
-    r_1_r2_x = c_3*r_1_r1_x + r_1_r1_y*s_3
-    r_1_r2_y = c_3*r_1_r1_y - r_1_r1_x*s_3
-    r_1_t = r_4_t_3*s_4
-    r_1_r4_x = r_1_t - c_4_t*r_1_r2_y
-    r_1_t_2 = c_4_t*r_4_t_3
-    r_1_r4_y = -r_1_t_2 - r_1_r2_y*s_4
-    r_1_r6_x = r_1_r2_x*s_5 - c_5_t*r_1_r4_y
-    r_1_r6_y = -c_5_t*r_1_r2_x - r_1_r4_y*s_5
-    # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-    v_1_x = e_1_r6_y*r_1_r4_x + r_1_r6_y*v_1_t
-    v_1_y = -e_1_r6_x*r_1_r4_x - r_1_r6_x*v_1_t
-    v_1_z = e_1_r6_x*r_1_r6_y - e_1_r6_y*r_1_r6_x
-    # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-    v_2_t = c_4_t*c_5_t
-    v_2_t_2 = c_4_t*s_5
-    # (rrrrrr-V4) from joint 2 to the connection point, along the links
-    r_2_r0_x_2 = c_3*r_2_x + r_3_r0_y*s_3
-    r_2_r0_y = c_3*r_3_r0_y - r_2_x*s_3
-    r_2_r2_x = r_1_t - c_4_t*r_2_r0_y
-    r_2_r2_y = -r_1_t_2 - r_2_r0_y*s_4
-    r_2_r4_x = r_2_r0_x_2*s_5 - c_5_t*r_2_r2_y
-    r_2_r4_y = -c_5_t*r_2_r0_x_2 - r_2_r2_y*s_5
-    # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-    v_2_x = r_2_r2_x*v_2_t_2 - r_2_r4_y*s_4
-    v_2_y = r_2_r4_x*s_4 - r_2_r2_x*v_2_t
-    v_2_z = r_2_r4_y*v_2_t - r_2_r4_x*v_2_t_2
-    # (rrrrrr-V3) from joint 3 to the connection point, along the links
-    r_3_r1_x = r_1_t - c_4_t*r_4_t_2
-    r_3_r1_y = -r_1_t_2 - r_4_t_2*s_4
-    r_3_r3_x = r_3_x*s_5 - c_5_t*r_3_r1_y
-    r_3_r3_y = -c_5_t*r_3_x - r_3_r1_y*s_5
-    # (rrrrrr-V8) velocity of the connection point per rate of joint 3
-    v_3_x = r_3_r1_x*v_2_t_2 - r_3_r3_y*s_4
-    v_3_y = r_3_r3_x*s_4 - r_3_r1_x*v_2_t
-    v_3_z = r_3_r3_y*v_2_t - r_3_r3_x*v_2_t_2
-    # (rrrrrr-V9) velocity of the connection point per rate of joint 4
-    v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t = c_4_t*s_3
-    w_1_t_2 = c_3*c_4_t
-    axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_2 - c_2_t*w_1_t
-    axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_2 + s_2*w_1_t
-    # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
-    c_1_t = sin(q_1)
-    # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
-    s_1 = cos(q_1)
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    axis_z_rrrrrr_axes5_r7_x = -axis_z_rrrrrr_axes5_r5_x*s_1 - c_1_t*s_4
-    axis_z_rrrrrr_axes5_r7_y = s_1*s_4 - axis_z_rrrrrr_axes5_r5_x*c_1_t
-    axis_z_rrrrrr_axes5_in_base_x = (
-    axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx + axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy
-        + axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
-    )
-    axis_z_rrrrrr_axes5_in_base_y = (
-    axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx + axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy
-        + axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
-    )
-    axis_z_rrrrrr_axes5_in_base_z = (
-    axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx + axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy
-        + axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
-    )
-    w_1_t_3 = s_4*s_5
-    axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_3
-    axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_3 - c_5_t*s_3
-    axis_y_rrrrrr_axes5_r5_x = -axis_y_rrrrrr_axes5_r4_x*c_2_t - axis_y_rrrrrr_axes5_r4_y*s_2
-    axis_y_rrrrrr_axes5_r5_y = axis_y_rrrrrr_axes5_r4_x*s_2 - axis_y_rrrrrr_axes5_r4_y*c_2_t
-    axis_y_rrrrrr_axes5_r7_x = -axis_y_rrrrrr_axes5_r5_x*s_1 - c_1_t*v_2_t_2
-    axis_y_rrrrrr_axes5_r7_y = s_1*v_2_t_2 - axis_y_rrrrrr_axes5_r5_x*c_1_t
-    axis_y_rrrrrr_axes5_in_base_x = (
-    axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx + axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy
-        + axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
-    )
-    axis_y_rrrrrr_axes5_in_base_y = (
-    axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx + axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy
-        + axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
-    )
-    axis_y_rrrrrr_axes5_in_base_z = (
-    axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx + axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy
-        + axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
-    )
-    axis_x_rrrrrr_axes5_x = (
-    axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_z -
-        axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_y
-    )
-    axis_x_rrrrrr_axes5_y = (
-    axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_x -
-        axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_z
-    )
-    axis_x_rrrrrr_axes5_z = (
-    axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_y -
-        axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_x
-    )
-    # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
-    end_p1_r0_x = (
-    rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xy + R_yx*rrrrrr_base_frame_yy +
-        R_zx*rrrrrr_base_frame_zy) +
-        rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xy +
-        R_yy*rrrrrr_base_frame_yy + R_zy*rrrrrr_base_frame_zy) +
-        rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xy +
-        R_yz*rrrrrr_base_frame_yy + R_zz*rrrrrr_base_frame_zy)
-    )
-    end_p1_r0_y = (
-    rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xz + R_yx*rrrrrr_base_frame_yz +
-        R_zx*rrrrrr_base_frame_zz) +
-        rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xz +
-        R_yy*rrrrrr_base_frame_yz + R_zy*rrrrrr_base_frame_zz) +
-        rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xz +
-        R_yz*rrrrrr_base_frame_yz + R_zz*rrrrrr_base_frame_zz)
-    )
-    end_p1_r0_z = (
-    rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xx + R_yx*rrrrrr_base_frame_yx +
-        R_zx*rrrrrr_base_frame_zx) +
-        rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xx +
-        R_yy*rrrrrr_base_frame_yx + R_zy*rrrrrr_base_frame_zx) +
-        rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xx +
-        R_yz*rrrrrr_base_frame_yx + R_zz*rrrrrr_base_frame_zx)
-    )
-    end_p1_r1_x = end_p1_r0_y*s_1 - c_1_t*end_p1_r0_x
-    end_p1_r1_y = -c_1_t*end_p1_r0_y - end_p1_r0_x*s_1
-    end_p1_r3_x = end_p1_r0_z*s_2 - c_2_t*end_p1_r1_y
-    end_p1_r3_y = -c_2_t*end_p1_r0_z - end_p1_r1_y*s_2
-    end_p1_r4_x = c_3*end_p1_r3_x + end_p1_r3_y*s_3
-    end_p1_r4_y = c_3*end_p1_r3_y - end_p1_r3_x*s_3
-    end_p1_r6_x = end_p1_r1_x*s_4 - c_4_t*end_p1_r4_y
-    end_p1_r6_y = -c_4_t*end_p1_r1_x - end_p1_r4_y*s_4
-    end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
-    end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_4 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
-    w_1_t_5 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
-    w_1_t_6 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
-    w_1_t_7 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
-    w_1_t_8 = size*w_1_t_4
-    w_1_t_9 = size*w_1_t_6
-    w_1_t_10 = size*w_1_t_5
-    w_1_t_11 = size*w_1_t_7
-    w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
-    w_1_t_13 = c_5_t*end_p1_r6_x*size
-    w_1_t_14 = end_p1_r8_y*size
-    w_1_t_15 = sqrt(size_t + w_1_t_14*w_1_t_14)
-    inv_w_1_t_69 = 1.0/w_1_t_15
-    w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
-    w_1_t_17 = inv_w_1_t_69*w_1_t_14
-    w_1_t_18 = w_1_t_13*w_1_t_17
-    w_1_t_19 = w_1_t_16*w_1_t_18
-    w_1_t_20 = w_1_t_13 - w_1_t_17*w_1_t_18
-    w_1_t_21 = v_1_y*w_1_t_16 - w_1_t_17*w_1_t_9
-    w_1_t_22 = v_1_y - w_1_t_16*w_1_t_21
-    w_1_t_23 = w_1_t_9 + w_1_t_17*w_1_t_21
-    w_1_t_24 = w_1_t_11*w_1_t_17
-    w_1_t_25 = v_2_y*w_1_t_16 - w_1_t_24
-    w_1_t_26 = v_2_y - w_1_t_16*w_1_t_25
-    w_1_t_27 = w_1_t_11 + w_1_t_17*w_1_t_25
-    w_1_t_28 = w_1_t_24 - v_3_y*w_1_t_16
-    w_1_t_29 = v_3_y + w_1_t_16*w_1_t_28
-    w_1_t_30 = w_1_t_11 - w_1_t_17*w_1_t_28
-    w_1_t_31 = sqrt(v_4_z*v_4_z + w_1_t_12*w_1_t_12 + w_1_t_19*w_1_t_19 + w_1_t_20*w_1_t_20)
-    inv_w_1_t_101 = 1.0/w_1_t_31
-    w_1_t_32 = inv_w_1_t_101*w_1_t_19
-    w_1_t_33 = inv_w_1_t_101*v_4_z
-    w_1_t_34 = inv_w_1_t_101*w_1_t_12
-    w_1_t_35 = inv_w_1_t_101*w_1_t_20
-    w_1_t_36 = w_1_t_22*w_1_t_32 + w_1_t_23*w_1_t_35 + w_1_t_34*w_1_t_8 - v_1_z*w_1_t_33
-    w_1_t_37 = w_1_t_32*w_1_t_36 - w_1_t_22
-    w_1_t_38 = v_1_z + w_1_t_33*w_1_t_36
-    w_1_t_39 = w_1_t_34*w_1_t_36 - w_1_t_8
-    w_1_t_40 = w_1_t_35*w_1_t_36 - w_1_t_23
-    w_1_t_41 = w_1_t_10*w_1_t_34
-    w_1_t_42 = w_1_t_41 + w_1_t_26*w_1_t_32 + w_1_t_27*w_1_t_35 - v_2_z*w_1_t_33
-    w_1_t_43 = w_1_t_32*w_1_t_42 - w_1_t_26
-    w_1_t_44 = v_2_z + w_1_t_33*w_1_t_42
-    w_1_t_45 = w_1_t_34*w_1_t_42 - w_1_t_10
-    w_1_t_46 = w_1_t_35*w_1_t_42 - w_1_t_27
-    w_1_t_47 = w_1_t_41 + w_1_t_29*w_1_t_32 + w_1_t_30*w_1_t_35 - v_3_z*w_1_t_33
-    w_1_t_48 = w_1_t_32*w_1_t_47 - w_1_t_29
-    w_1_t_49 = v_3_z + w_1_t_33*w_1_t_47
-    w_1_t_50 = w_1_t_34*w_1_t_47 - w_1_t_10
-    w_1_t_51 = w_1_t_35*w_1_t_47 - w_1_t_30
-    w_1_t_52 = (
-    sqrt(v_1_x*v_1_x + w_1_t_37*w_1_t_37 + w_1_t_38*w_1_t_38 + w_1_t_39*w_1_t_39 +
-        w_1_t_40*w_1_t_40)
-    )
-    inv_w_1_t_150 = 1.0/w_1_t_52
-    w_1_t_53 = inv_w_1_t_150*v_1_x
-    w_1_t_54 = inv_w_1_t_150*w_1_t_37
-    w_1_t_55 = inv_w_1_t_150*w_1_t_38
-    w_1_t_56 = inv_w_1_t_150*w_1_t_39
-    w_1_t_57 = inv_w_1_t_150*w_1_t_40
-    w_1_t_58 = (
-    v_2_x*w_1_t_53 + w_1_t_43*w_1_t_54 + w_1_t_44*w_1_t_55 + w_1_t_45*w_1_t_56 + w_1_t_46*w_1_t_57
-    )
-    w_1_t_59 = v_2_x - w_1_t_53*w_1_t_58
-    w_1_t_60 = w_1_t_43 - w_1_t_54*w_1_t_58
-    w_1_t_61 = w_1_t_44 - w_1_t_55*w_1_t_58
-    w_1_t_62 = w_1_t_45 - w_1_t_56*w_1_t_58
-    w_1_t_63 = w_1_t_46 - w_1_t_57*w_1_t_58
-    w_1_t_64 = (
-    v_3_x*w_1_t_53 + w_1_t_48*w_1_t_54 + w_1_t_49*w_1_t_55 + w_1_t_50*w_1_t_56 + w_1_t_51*w_1_t_57
-    )
-    w_1_t_65 = v_3_x - w_1_t_53*w_1_t_64
-    w_1_t_66 = w_1_t_48 - w_1_t_54*w_1_t_64
-    w_1_t_67 = w_1_t_49 - w_1_t_55*w_1_t_64
-    w_1_t_68 = w_1_t_50 - w_1_t_56*w_1_t_64
-    w_1_t_69 = w_1_t_51 - w_1_t_57*w_1_t_64
-    w_1_t_70 = (
-    sqrt(w_1_t_59*w_1_t_59 + w_1_t_60*w_1_t_60 + w_1_t_61*w_1_t_61 + w_1_t_62*w_1_t_62 +
-        w_1_t_63*w_1_t_63)
-    )
-    inv_w_1_t_194 = 1.0/w_1_t_70
-    w_1_t_71 = inv_w_1_t_194*w_1_t_59
-    w_1_t_72 = inv_w_1_t_194*w_1_t_60
-    w_1_t_73 = inv_w_1_t_194*w_1_t_61
-    w_1_t_74 = inv_w_1_t_194*w_1_t_62
-    w_1_t_75 = inv_w_1_t_194*w_1_t_63
-    w_1_t_76 = (
-    w_1_t_65*w_1_t_71 + w_1_t_66*w_1_t_72 + w_1_t_67*w_1_t_73 + w_1_t_68*w_1_t_74 +
-        w_1_t_69*w_1_t_75
-    )
-    w_1_t_77 = w_1_t_65 - w_1_t_71*w_1_t_76
-    w_1_t_78 = w_1_t_66 - w_1_t_72*w_1_t_76
-    w_1_t_79 = w_1_t_67 - w_1_t_73*w_1_t_76
-    w_1_t_80 = w_1_t_68 - w_1_t_74*w_1_t_76
-    w_1_t_81 = w_1_t_69 - w_1_t_75*w_1_t_76
-    w_1_t_82 = (
-    sqrt(w_1_t_77*w_1_t_77 + w_1_t_78*w_1_t_78 + w_1_t_79*w_1_t_79 + w_1_t_80*w_1_t_80 +
-        w_1_t_81*w_1_t_81)
-    )
-    inv_w_1_t_222 = 1.0/w_1_t_82
-    # (rrrrrr-V16) force part of reciprocal wrench 2
-    w_2_t = inv_w_1_t_194*inv_w_1_t_222*w_1_t_76
-    w_2_t_2 = inv_w_1_t_194*w_1_t_71 - inv_w_1_t_222*w_1_t_77*w_2_t
-    w_2_t_3 = inv_w_1_t_194*w_1_t_72 - inv_w_1_t_222*w_1_t_78*w_2_t
-    w_2_t_4 = inv_w_1_t_222*w_1_t_79*w_2_t - inv_w_1_t_194*w_1_t_73
-    w_2_t_5 = size*(inv_w_1_t_194*w_1_t_74 - inv_w_1_t_222*w_1_t_80*w_2_t)
-    w_2_t_6 = size*(inv_w_1_t_194*w_1_t_75 - inv_w_1_t_222*w_1_t_81*w_2_t)
-    # (M2) coupling block of M
-    q_in_base_x = (
-    R_xx*rrrrrr_platform_point_x + R_xy*rrrrrr_platform_point_y + R_xz*rrrrrr_platform_point_z
-    )
-    q_in_base_y = (
-    R_yx*rrrrrr_platform_point_x + R_yy*rrrrrr_platform_point_y + R_yz*rrrrrr_platform_point_z
-    )
-    q_in_base_z = (
-    R_zx*rrrrrr_platform_point_x + R_zy*rrrrrr_platform_point_y + R_zz*rrrrrr_platform_point_z
-    )
-    # (rrrrrr-V16) force part of reciprocal wrench 2
-    w_2_in_base_x = (
-    axis_x_rrrrrr_axes5_x*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_x*w_2_t_3 -
-        axis_z_rrrrrr_axes5_in_base_x*w_2_t_4
-    )
-    w_2_in_base_y = (
-    axis_x_rrrrrr_axes5_y*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_y*w_2_t_3 -
-        axis_z_rrrrrr_axes5_in_base_y*w_2_t_4
-    )
-    w_2_in_base_z = (
-    axis_x_rrrrrr_axes5_z*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_z*w_2_t_3 -
-        axis_z_rrrrrr_axes5_in_base_z*w_2_t_4
-    )
-    # (rrrrrr-V29) moment part of reciprocal wrench 2
-    o_2_x = (
-    w_2_t_5*(axis_y_rrrrrr_axes5_in_base_x*end_p1_r8_x - axis_x_rrrrrr_axes5_x*end_p1_r8_y) +
-        w_2_t_6*(axis_z_rrrrrr_axes5_in_base_x*end_p1_r8_y -
-        axis_y_rrrrrr_axes5_in_base_x*end_p1_r6_x)
-    )
-    o_2_y = (
-    w_2_t_5*(axis_y_rrrrrr_axes5_in_base_y*end_p1_r8_x - axis_x_rrrrrr_axes5_y*end_p1_r8_y) +
-        w_2_t_6*(axis_z_rrrrrr_axes5_in_base_y*end_p1_r8_y -
-        axis_y_rrrrrr_axes5_in_base_y*end_p1_r6_x)
-    )
-    o_2_z = (
-    w_2_t_5*(axis_y_rrrrrr_axes5_in_base_z*end_p1_r8_x - axis_x_rrrrrr_axes5_z*end_p1_r8_y) +
-        w_2_t_6*(axis_z_rrrrrr_axes5_in_base_z*end_p1_r8_y -
-        axis_y_rrrrrr_axes5_in_base_z*end_p1_r6_x)
-    )
-    # (M8) moment of the column's unit force about the platform origin
-    H_a_2_x = o_2_x + q_in_base_y*w_2_in_base_z - q_in_base_z*w_2_in_base_y
-    H_a_2_y = o_2_y + q_in_base_z*w_2_in_base_x - q_in_base_x*w_2_in_base_z
-    H_a_2_z = o_2_z + q_in_base_x*w_2_in_base_y - q_in_base_y*w_2_in_base_x
-    ok = (abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE * size) & (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) & (abs(w_1_t_82) > _TOLERANCE * size)
-    return (ok, (), (w_2_in_base_x, w_2_in_base_y, w_2_in_base_z, H_a_2_x, H_a_2_y, H_a_2_z,),)
+    ok = True
+    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    out_H = m.zeros(36)
+    for leg, k in legs[0]:
+        (
+        rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
+            rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx,
+            rrrrrr_base_frame_zy, rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x,
+            rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x,
+            rrrrrr_platform_joint_axis_platform_x, rrrrrr_platform_joint_axis_platform_y,
+            rrrrrr_platform_joint_axis_platform_z, rrrrrr_platform_joint_offset_x,
+            rrrrrr_platform_point_x, rrrrrr_platform_point_y, rrrrrr_platform_point_z, size,
+            size_t,
+        ) = k
+        q_1 = q[[0, 5, 10, 15, 20, 25][leg]]
+        q_2 = q[[1, 6, 11, 16, 21, 26][leg]]
+        q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
+        q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
+        q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
+        # (rrrrrr-K10) cosine of the angle of joint 5 from its reference direction
+        c_5_t = sin(q_5)
+        # (rrrrrr-K11) sine of the angle of joint 5 from its reference direction
+        s_5 = cos(q_5)
+        # (rrrrrr-V2) from joint 4 to the connection point, along the links
+        r_4_t = c_5_t*rrrrrr_platform_joint_offset_x
+        r_4_z = rrrrrr_joint5_offset_x + rrrrrr_platform_joint_offset_x*s_5
+        # (rrrrrr-K8) cosine of the angle of joint 4 from its reference direction
+        c_4_t = sin(q_4)
+        # (rrrrrr-K9) sine of the angle of joint 4 from its reference direction
+        s_4 = cos(q_4)
+        # (rrrrrr-V2) from joint 4 to the connection point, along the links
+        r_4_t_2 = r_4_t*s_4
+        r_4_t_3 = c_4_t*r_4_t
+        # (rrrrrr-V3) from joint 3 to the connection point, along the links
+        r_3_x = r_4_z + rrrrrr_joint4_offset_x
+        # (rrrrrr-K6) cosine of the angle of joint 3 from its reference direction
+        c_3 = cos(q_3)
+        # (rrrrrr-K7) sine of the angle of joint 3 from its reference direction
+        s_3 = sin(q_3)
+        # (rrrrrr-V3) from joint 3 to the connection point, along the links
+        r_3_r0_y = c_3*r_4_t_2 + r_3_x*s_3
+        # (rrrrrr-V4) from joint 2 to the connection point, along the links
+        r_2_x = rrrrrr_joint3_offset_x + c_3*r_3_x - r_4_t_2*s_3
+        # (rrrrrr-K4) cosine of the angle of joint 2 from its reference direction
+        c_2_t = sin(q_2)
+        # (rrrrrr-K5) sine of the angle of joint 2 from its reference direction
+        s_2 = cos(q_2)
+        # (rrrrrr-V4) from joint 2 to the connection point, along the links
+        r_2_r0_x = -c_2_t*r_2_x - r_3_r0_y*s_2
+        # (rrrrrr-V5) from joint 1 to the connection point, along the links
+        r_1_z = rrrrrr_joint2_offset_x + r_2_x*s_2 - c_2_t*r_3_r0_y
+        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
+        e_1_r2_x = c_3*s_2 - c_2_t*s_3
+        e_1_r2_y = -c_2_t*c_3 - s_2*s_3
+        v_1_t = c_4_t*e_1_r2_y
+        v_1_t_2 = e_1_r2_y*s_4
+        e_1_r6_x = c_5_t*v_1_t_2 + e_1_r2_x*s_5
+        e_1_r6_y = s_5*v_1_t_2 - c_5_t*e_1_r2_x
+        # (rrrrrr-V5) from joint 1 to the connection point, along the links
+        r_1_r1_x = r_1_z*s_2 - c_2_t*r_2_r0_x
+        r_1_r1_y = -c_2_t*r_1_z - r_2_r0_x*s_2
+        r_1_r2_x = c_3*r_1_r1_x + r_1_r1_y*s_3
+        r_1_r2_y = c_3*r_1_r1_y - r_1_r1_x*s_3
+        r_1_t = r_4_t_3*s_4
+        r_1_r4_x = r_1_t - c_4_t*r_1_r2_y
+        r_1_t_2 = c_4_t*r_4_t_3
+        r_1_r4_y = -r_1_t_2 - r_1_r2_y*s_4
+        r_1_r6_x = r_1_r2_x*s_5 - c_5_t*r_1_r4_y
+        r_1_r6_y = -c_5_t*r_1_r2_x - r_1_r4_y*s_5
+        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
+        v_1_x = e_1_r6_y*r_1_r4_x + r_1_r6_y*v_1_t
+        v_1_y = -e_1_r6_x*r_1_r4_x - r_1_r6_x*v_1_t
+        v_1_z = e_1_r6_x*r_1_r6_y - e_1_r6_y*r_1_r6_x
+        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
+        v_2_t = c_4_t*c_5_t
+        v_2_t_2 = c_4_t*s_5
+        # (rrrrrr-V4) from joint 2 to the connection point, along the links
+        r_2_r0_x_2 = c_3*r_2_x + r_3_r0_y*s_3
+        r_2_r0_y = c_3*r_3_r0_y - r_2_x*s_3
+        r_2_r2_x = r_1_t - c_4_t*r_2_r0_y
+        r_2_r2_y = -r_1_t_2 - r_2_r0_y*s_4
+        r_2_r4_x = r_2_r0_x_2*s_5 - c_5_t*r_2_r2_y
+        r_2_r4_y = -c_5_t*r_2_r0_x_2 - r_2_r2_y*s_5
+        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
+        v_2_x = r_2_r2_x*v_2_t_2 - r_2_r4_y*s_4
+        v_2_y = r_2_r4_x*s_4 - r_2_r2_x*v_2_t
+        v_2_z = r_2_r4_y*v_2_t - r_2_r4_x*v_2_t_2
+        # (rrrrrr-V3) from joint 3 to the connection point, along the links
+        r_3_r1_x = r_1_t - c_4_t*r_4_t_2
+        r_3_r1_y = -r_1_t_2 - r_4_t_2*s_4
+        r_3_r3_x = r_3_x*s_5 - c_5_t*r_3_r1_y
+        r_3_r3_y = -c_5_t*r_3_x - r_3_r1_y*s_5
+        # (rrrrrr-V8) velocity of the connection point per rate of joint 3
+        v_3_x = r_3_r1_x*v_2_t_2 - r_3_r3_y*s_4
+        v_3_y = r_3_r3_x*s_4 - r_3_r1_x*v_2_t
+        v_3_z = r_3_r3_y*v_2_t - r_3_r3_x*v_2_t_2
+        # (rrrrrr-V9) velocity of the connection point per rate of joint 4
+        v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
+        # (rrrrrr-V13) force part of reciprocal wrench 1
+        w_1_t = c_4_t*s_3
+        w_1_t_2 = c_3*c_4_t
+        axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_2 - c_2_t*w_1_t
+        axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_2 + s_2*w_1_t
+        # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
+        c_1_t = sin(q_1)
+        # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
+        s_1 = cos(q_1)
+        # (rrrrrr-V13) force part of reciprocal wrench 1
+        axis_z_rrrrrr_axes5_r7_x = -axis_z_rrrrrr_axes5_r5_x*s_1 - c_1_t*s_4
+        axis_z_rrrrrr_axes5_r7_y = s_1*s_4 - axis_z_rrrrrr_axes5_r5_x*c_1_t
+        axis_z_rrrrrr_axes5_in_base_x = (
+        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx +
+            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy +
+            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
+        )
+        axis_z_rrrrrr_axes5_in_base_y = (
+        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx +
+            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy +
+            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
+        )
+        axis_z_rrrrrr_axes5_in_base_z = (
+        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx +
+            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy +
+            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
+        )
+        w_1_t_3 = s_4*s_5
+        axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_3
+        axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_3 - c_5_t*s_3
+        axis_y_rrrrrr_axes5_r5_x = -axis_y_rrrrrr_axes5_r4_x*c_2_t - axis_y_rrrrrr_axes5_r4_y*s_2
+        axis_y_rrrrrr_axes5_r5_y = axis_y_rrrrrr_axes5_r4_x*s_2 - axis_y_rrrrrr_axes5_r4_y*c_2_t
+        axis_y_rrrrrr_axes5_r7_x = -axis_y_rrrrrr_axes5_r5_x*s_1 - c_1_t*v_2_t_2
+        axis_y_rrrrrr_axes5_r7_y = s_1*v_2_t_2 - axis_y_rrrrrr_axes5_r5_x*c_1_t
+        axis_y_rrrrrr_axes5_in_base_x = (
+        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx +
+            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy +
+            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
+        )
+        axis_y_rrrrrr_axes5_in_base_y = (
+        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx +
+            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy +
+            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
+        )
+        axis_y_rrrrrr_axes5_in_base_z = (
+        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx +
+            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy +
+            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
+        )
+        axis_x_rrrrrr_axes5_x = (
+        axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_z -
+            axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_y
+        )
+        axis_x_rrrrrr_axes5_y = (
+        axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_x -
+            axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_z
+        )
+        axis_x_rrrrrr_axes5_z = (
+        axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_y -
+            axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_x
+        )
+        # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
+        end_p1_r0_x = (
+        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xy +
+            R_yx*rrrrrr_base_frame_yy + R_zx*rrrrrr_base_frame_zy) +
+            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xy +
+            R_yy*rrrrrr_base_frame_yy + R_zy*rrrrrr_base_frame_zy) +
+            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xy +
+            R_yz*rrrrrr_base_frame_yy + R_zz*rrrrrr_base_frame_zy)
+        )
+        end_p1_r0_y = (
+        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xz +
+            R_yx*rrrrrr_base_frame_yz + R_zx*rrrrrr_base_frame_zz) +
+            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xz +
+            R_yy*rrrrrr_base_frame_yz + R_zy*rrrrrr_base_frame_zz) +
+            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xz +
+            R_yz*rrrrrr_base_frame_yz + R_zz*rrrrrr_base_frame_zz)
+        )
+        end_p1_r0_z = (
+        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xx +
+            R_yx*rrrrrr_base_frame_yx + R_zx*rrrrrr_base_frame_zx) +
+            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xx +
+            R_yy*rrrrrr_base_frame_yx + R_zy*rrrrrr_base_frame_zx) +
+            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xx +
+            R_yz*rrrrrr_base_frame_yx + R_zz*rrrrrr_base_frame_zx)
+        )
+        end_p1_r1_x = end_p1_r0_y*s_1 - c_1_t*end_p1_r0_x
+        end_p1_r1_y = -c_1_t*end_p1_r0_y - end_p1_r0_x*s_1
+        end_p1_r3_x = end_p1_r0_z*s_2 - c_2_t*end_p1_r1_y
+        end_p1_r3_y = -c_2_t*end_p1_r0_z - end_p1_r1_y*s_2
+        end_p1_r4_x = c_3*end_p1_r3_x + end_p1_r3_y*s_3
+        end_p1_r4_y = c_3*end_p1_r3_y - end_p1_r3_x*s_3
+        end_p1_r6_x = end_p1_r1_x*s_4 - c_4_t*end_p1_r4_y
+        end_p1_r6_y = -c_4_t*end_p1_r1_x - end_p1_r4_y*s_4
+        end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
+        end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
+        # (rrrrrr-V13) force part of reciprocal wrench 1
+        w_1_t_4 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
+        w_1_t_5 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
+        w_1_t_6 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
+        w_1_t_7 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
+        w_1_t_8 = size*w_1_t_4
+        w_1_t_9 = size*w_1_t_6
+        w_1_t_10 = size*w_1_t_5
+        w_1_t_11 = size*w_1_t_7
+        w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
+        w_1_t_13 = c_5_t*end_p1_r6_x*size
+        w_1_t_14 = end_p1_r8_y*size
+        w_1_t_15 = sqrt(size_t + w_1_t_14*w_1_t_14)
+        inv_w_1_t_69 = 1.0/w_1_t_15
+        w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
+        w_1_t_17 = inv_w_1_t_69*w_1_t_14
+        w_1_t_18 = w_1_t_13*w_1_t_17
+        w_1_t_19 = w_1_t_16*w_1_t_18
+        w_1_t_20 = w_1_t_13 - w_1_t_17*w_1_t_18
+        w_1_t_21 = v_1_y*w_1_t_16 - w_1_t_17*w_1_t_9
+        w_1_t_22 = v_1_y - w_1_t_16*w_1_t_21
+        w_1_t_23 = w_1_t_9 + w_1_t_17*w_1_t_21
+        w_1_t_24 = w_1_t_11*w_1_t_17
+        w_1_t_25 = v_2_y*w_1_t_16 - w_1_t_24
+        w_1_t_26 = v_2_y - w_1_t_16*w_1_t_25
+        w_1_t_27 = w_1_t_11 + w_1_t_17*w_1_t_25
+        w_1_t_28 = w_1_t_24 - v_3_y*w_1_t_16
+        w_1_t_29 = v_3_y + w_1_t_16*w_1_t_28
+        w_1_t_30 = w_1_t_11 - w_1_t_17*w_1_t_28
+        w_1_t_31 = sqrt(v_4_z*v_4_z + w_1_t_12*w_1_t_12 + w_1_t_19*w_1_t_19 + w_1_t_20*w_1_t_20)
+        inv_w_1_t_101 = 1.0/w_1_t_31
+        w_1_t_32 = inv_w_1_t_101*w_1_t_19
+        w_1_t_33 = inv_w_1_t_101*v_4_z
+        w_1_t_34 = inv_w_1_t_101*w_1_t_12
+        w_1_t_35 = inv_w_1_t_101*w_1_t_20
+        w_1_t_36 = w_1_t_22*w_1_t_32 + w_1_t_23*w_1_t_35 + w_1_t_34*w_1_t_8 - v_1_z*w_1_t_33
+        w_1_t_37 = w_1_t_32*w_1_t_36 - w_1_t_22
+        w_1_t_38 = v_1_z + w_1_t_33*w_1_t_36
+        w_1_t_39 = w_1_t_34*w_1_t_36 - w_1_t_8
+        w_1_t_40 = w_1_t_35*w_1_t_36 - w_1_t_23
+        w_1_t_41 = w_1_t_10*w_1_t_34
+        w_1_t_42 = w_1_t_41 + w_1_t_26*w_1_t_32 + w_1_t_27*w_1_t_35 - v_2_z*w_1_t_33
+        w_1_t_43 = w_1_t_32*w_1_t_42 - w_1_t_26
+        w_1_t_44 = v_2_z + w_1_t_33*w_1_t_42
+        w_1_t_45 = w_1_t_34*w_1_t_42 - w_1_t_10
+        w_1_t_46 = w_1_t_35*w_1_t_42 - w_1_t_27
+        w_1_t_47 = w_1_t_41 + w_1_t_29*w_1_t_32 + w_1_t_30*w_1_t_35 - v_3_z*w_1_t_33
+        w_1_t_48 = w_1_t_32*w_1_t_47 - w_1_t_29
+        w_1_t_49 = v_3_z + w_1_t_33*w_1_t_47
+        w_1_t_50 = w_1_t_34*w_1_t_47 - w_1_t_10
+        w_1_t_51 = w_1_t_35*w_1_t_47 - w_1_t_30
+        w_1_t_52 = (
+        sqrt(v_1_x*v_1_x + w_1_t_37*w_1_t_37 + w_1_t_38*w_1_t_38 + w_1_t_39*w_1_t_39 +
+            w_1_t_40*w_1_t_40)
+        )
+        inv_w_1_t_150 = 1.0/w_1_t_52
+        w_1_t_53 = inv_w_1_t_150*v_1_x
+        w_1_t_54 = inv_w_1_t_150*w_1_t_37
+        w_1_t_55 = inv_w_1_t_150*w_1_t_38
+        w_1_t_56 = inv_w_1_t_150*w_1_t_39
+        w_1_t_57 = inv_w_1_t_150*w_1_t_40
+        w_1_t_58 = (
+        v_2_x*w_1_t_53 + w_1_t_43*w_1_t_54 + w_1_t_44*w_1_t_55 + w_1_t_45*w_1_t_56 +
+            w_1_t_46*w_1_t_57
+        )
+        w_1_t_59 = v_2_x - w_1_t_53*w_1_t_58
+        w_1_t_60 = w_1_t_43 - w_1_t_54*w_1_t_58
+        w_1_t_61 = w_1_t_44 - w_1_t_55*w_1_t_58
+        w_1_t_62 = w_1_t_45 - w_1_t_56*w_1_t_58
+        w_1_t_63 = w_1_t_46 - w_1_t_57*w_1_t_58
+        w_1_t_64 = (
+        v_3_x*w_1_t_53 + w_1_t_48*w_1_t_54 + w_1_t_49*w_1_t_55 + w_1_t_50*w_1_t_56 +
+            w_1_t_51*w_1_t_57
+        )
+        w_1_t_65 = v_3_x - w_1_t_53*w_1_t_64
+        w_1_t_66 = w_1_t_48 - w_1_t_54*w_1_t_64
+        w_1_t_67 = w_1_t_49 - w_1_t_55*w_1_t_64
+        w_1_t_68 = w_1_t_50 - w_1_t_56*w_1_t_64
+        w_1_t_69 = w_1_t_51 - w_1_t_57*w_1_t_64
+        w_1_t_70 = (
+        sqrt(w_1_t_59*w_1_t_59 + w_1_t_60*w_1_t_60 + w_1_t_61*w_1_t_61 + w_1_t_62*w_1_t_62 +
+            w_1_t_63*w_1_t_63)
+        )
+        inv_w_1_t_194 = 1.0/w_1_t_70
+        w_1_t_71 = inv_w_1_t_194*w_1_t_59
+        w_1_t_72 = inv_w_1_t_194*w_1_t_60
+        w_1_t_73 = inv_w_1_t_194*w_1_t_61
+        w_1_t_74 = inv_w_1_t_194*w_1_t_62
+        w_1_t_75 = inv_w_1_t_194*w_1_t_63
+        w_1_t_76 = (
+        w_1_t_65*w_1_t_71 + w_1_t_66*w_1_t_72 + w_1_t_67*w_1_t_73 + w_1_t_68*w_1_t_74 +
+            w_1_t_69*w_1_t_75
+        )
+        w_1_t_77 = w_1_t_65 - w_1_t_71*w_1_t_76
+        w_1_t_78 = w_1_t_66 - w_1_t_72*w_1_t_76
+        w_1_t_79 = w_1_t_67 - w_1_t_73*w_1_t_76
+        w_1_t_80 = w_1_t_68 - w_1_t_74*w_1_t_76
+        w_1_t_81 = w_1_t_69 - w_1_t_75*w_1_t_76
+        w_1_t_82 = (
+        sqrt(w_1_t_77*w_1_t_77 + w_1_t_78*w_1_t_78 + w_1_t_79*w_1_t_79 + w_1_t_80*w_1_t_80 +
+            w_1_t_81*w_1_t_81)
+        )
+        inv_w_1_t_222 = 1.0/w_1_t_82
+        # (rrrrrr-V16) force part of reciprocal wrench 2
+        w_2_t = inv_w_1_t_194*inv_w_1_t_222*w_1_t_76
+        w_2_t_2 = inv_w_1_t_194*w_1_t_71 - inv_w_1_t_222*w_1_t_77*w_2_t
+        w_2_t_3 = inv_w_1_t_194*w_1_t_72 - inv_w_1_t_222*w_1_t_78*w_2_t
+        w_2_t_4 = inv_w_1_t_222*w_1_t_79*w_2_t - inv_w_1_t_194*w_1_t_73
+        w_2_t_5 = size*(inv_w_1_t_194*w_1_t_74 - inv_w_1_t_222*w_1_t_80*w_2_t)
+        w_2_t_6 = size*(inv_w_1_t_194*w_1_t_75 - inv_w_1_t_222*w_1_t_81*w_2_t)
+        # (M2) coupling block of M
+        q_in_base_x = (
+        R_xx*rrrrrr_platform_point_x + R_xy*rrrrrr_platform_point_y + R_xz*rrrrrr_platform_point_z
+        )
+        q_in_base_y = (
+        R_yx*rrrrrr_platform_point_x + R_yy*rrrrrr_platform_point_y + R_yz*rrrrrr_platform_point_z
+        )
+        q_in_base_z = (
+        R_zx*rrrrrr_platform_point_x + R_zy*rrrrrr_platform_point_y + R_zz*rrrrrr_platform_point_z
+        )
+        # (rrrrrr-V16) force part of reciprocal wrench 2
+        w_2_in_base_x = (
+        axis_x_rrrrrr_axes5_x*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_x*w_2_t_3 -
+            axis_z_rrrrrr_axes5_in_base_x*w_2_t_4
+        )
+        w_2_in_base_y = (
+        axis_x_rrrrrr_axes5_y*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_y*w_2_t_3 -
+            axis_z_rrrrrr_axes5_in_base_y*w_2_t_4
+        )
+        w_2_in_base_z = (
+        axis_x_rrrrrr_axes5_z*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_z*w_2_t_3 -
+            axis_z_rrrrrr_axes5_in_base_z*w_2_t_4
+        )
+        # (rrrrrr-V29) moment part of reciprocal wrench 2
+        o_2_x = (
+        w_2_t_5*(axis_y_rrrrrr_axes5_in_base_x*end_p1_r8_x - axis_x_rrrrrr_axes5_x*end_p1_r8_y) +
+            w_2_t_6*(axis_z_rrrrrr_axes5_in_base_x*end_p1_r8_y -
+            axis_y_rrrrrr_axes5_in_base_x*end_p1_r6_x)
+        )
+        o_2_y = (
+        w_2_t_5*(axis_y_rrrrrr_axes5_in_base_y*end_p1_r8_x - axis_x_rrrrrr_axes5_y*end_p1_r8_y) +
+            w_2_t_6*(axis_z_rrrrrr_axes5_in_base_y*end_p1_r8_y -
+            axis_y_rrrrrr_axes5_in_base_y*end_p1_r6_x)
+        )
+        o_2_z = (
+        w_2_t_5*(axis_y_rrrrrr_axes5_in_base_z*end_p1_r8_x - axis_x_rrrrrr_axes5_z*end_p1_r8_y) +
+            w_2_t_6*(axis_z_rrrrrr_axes5_in_base_z*end_p1_r8_y -
+            axis_y_rrrrrr_axes5_in_base_z*end_p1_r6_x)
+        )
+        # (M8) moment of the column's unit force about the platform origin
+        H_a_2_x = o_2_x + q_in_base_y*w_2_in_base_z - q_in_base_z*w_2_in_base_y
+        H_a_2_y = o_2_y + q_in_base_z*w_2_in_base_x - q_in_base_x*w_2_in_base_z
+        H_a_2_z = o_2_z + q_in_base_x*w_2_in_base_y - q_in_base_y*w_2_in_base_x
+        ok = (
+        ok & m.every((abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE * size) &
+            (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
+            (abs(w_1_t_82) > _TOLERANCE * size))
+        )
+        out_H[[0, 1, 2, 3, 4, 5][leg]] = w_2_in_base_x
+        out_H[[6, 7, 8, 9, 10, 11][leg]] = w_2_in_base_y
+        out_H[[12, 13, 14, 15, 16, 17][leg]] = w_2_in_base_z
+        out_H[[18, 19, 20, 21, 22, 23][leg]] = H_a_2_x
+        out_H[[24, 25, 26, 27, 28, 29][leg]] = H_a_2_y
+        out_H[[30, 31, 32, 33, 34, 35][leg]] = H_a_2_z
+    return ok, (out_H,)
 
 
 # required: 5649 mul, 4221 add, 30 div, 30 sqrt, 60 trig
-def _required_before(c, X, V, A, q, f):
+def _run_required(m, X, V, A, q):
+    sqrt = m.sqrt
+    sin = m.sin
+    cos = m.cos
+    shared, legs = m.constants("required")
     (
     J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
         gravity_z, h_star_x, h_star_y, h_star_z, m_star,
-    ) = c
+    ) = shared
     X_3 = X[3]
     X_4 = X[4]
     X_5 = X[5]
@@ -5198,6 +5851,11 @@ def _required_before(c, X, V, A, q, f):
     A_3 = A[3]
     A_4 = A[4]
     A_5 = A[5]
+    q_1 = q[1]
+    q_2 = q[2]
+    q_3 = q[3]
+    q_4 = q[4]
+    q_5 = q[5]
     # X: named entries
     quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6
     quaternion_scale = 2.0/quaternion_norm2
@@ -5236,6 +5894,10 @@ def _required_before(c, X, V, A, q, f):
     alpha_x = A_3
     alpha_y = A_4
     alpha_z = A_5
+    ok = True
+    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    out_required = m.zeros(6)
+    out_H = m.zeros(36)
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -5294,883 +5956,898 @@ def _required_before(c, X, V, A, q, f):
     mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z
     mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z
     mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z
-    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    return (
-    ok, (R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y, t_dot_z, omega_x,
-        omega_y, omega_z, t_ddot_x, t_ddot_y, t_ddot_z, alpha_x, alpha_y, alpha_z, f_p_x, f_p_y,
-        f_p_z, mu_p_in_base_x, mu_p_in_base_y, mu_p_in_base_z,), (),
-    )
-
-
-def _required_rrrrrr(c, k, x, s, f):
-    sqrt = f.sqrt
-    sin = f.sin
-    cos = f.cos
-    gravity_x, gravity_y, gravity_z = c
-    (
-    J_1_xx, J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, J_4_xy, J_4_xz, J_4_yz, J_5_xy,
-        J_5_xz, J_5_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz,
-        Sigma_4_xx, Sigma_4_yy, Sigma_4_zz, Sigma_5_xx, Sigma_5_yy, Sigma_5_zz, g_r0_x, g_r0_y,
-        g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, h_4_x, h_4_y, h_4_z,
-        h_5_x, h_5_y, h_5_z, rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz,
-        rrrrrr_base_frame_yx, rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx,
-        rrrrrr_base_frame_zy, rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x,
-        rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x, rrrrrr_link3_mass,
-        rrrrrr_link4_mass, rrrrrr_platform_joint_axis_platform_x,
-        rrrrrr_platform_joint_axis_platform_y, rrrrrr_platform_joint_axis_platform_z,
-        rrrrrr_platform_joint_offset_x, rrrrrr_platform_point_x, rrrrrr_platform_point_y,
-        rrrrrr_platform_point_z, size, size_t,
-    ) = k
-    q_1, q_2, q_3, q_4, q_5 = x
-    (
-    R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y, t_dot_z, omega_x,
-        omega_y, omega_z, t_ddot_x, t_ddot_y, t_ddot_z, alpha_x, alpha_y, alpha_z,
-    ) = s
-    # (rrrrrr-K10) cosine of the angle of joint 5 from its reference direction
-    c_5_t = sin(q_5)
-    # (rrrrrr-K11) sine of the angle of joint 5 from its reference direction
-    s_5 = cos(q_5)
-    # (rrrrrr-V2) from joint 4 to the connection point, along the links
-    r_4_t = c_5_t*rrrrrr_platform_joint_offset_x
-    r_4_z = rrrrrr_joint5_offset_x + rrrrrr_platform_joint_offset_x*s_5
-    # (rrrrrr-K8) cosine of the angle of joint 4 from its reference direction
-    c_4_t = sin(q_4)
-    # (rrrrrr-K9) sine of the angle of joint 4 from its reference direction
-    s_4 = cos(q_4)
-    # (rrrrrr-V2) from joint 4 to the connection point, along the links
-    r_4_t_2 = r_4_t*s_4
-    r_4_t_3 = c_4_t*r_4_t
-    # (rrrrrr-V3) from joint 3 to the connection point, along the links
-    r_3_x = r_4_z + rrrrrr_joint4_offset_x
-    # (rrrrrr-K6) cosine of the angle of joint 3 from its reference direction
-    c_3 = cos(q_3)
-    # (rrrrrr-K7) sine of the angle of joint 3 from its reference direction
-    s_3 = sin(q_3)
-    # (rrrrrr-V3) from joint 3 to the connection point, along the links
-    r_3_r0_y = c_3*r_4_t_2 + r_3_x*s_3
-    # (rrrrrr-V4) from joint 2 to the connection point, along the links
-    r_2_x = rrrrrr_joint3_offset_x + c_3*r_3_x - r_4_t_2*s_3
-    # (rrrrrr-K4) cosine of the angle of joint 2 from its reference direction
-    c_2_t = sin(q_2)
-    # (rrrrrr-K5) sine of the angle of joint 2 from its reference direction
-    s_2 = cos(q_2)
-    # (rrrrrr-V4) from joint 2 to the connection point, along the links
-    r_2_r0_x = -c_2_t*r_2_x - r_3_r0_y*s_2
-    # (rrrrrr-V5) from joint 1 to the connection point, along the links
-    r_1_z = rrrrrr_joint2_offset_x + r_2_x*s_2 - c_2_t*r_3_r0_y
-    # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-    e_1_r2_x = c_3*s_2 - c_2_t*s_3
-    e_1_r2_y = -c_2_t*c_3 - s_2*s_3
-    v_1_t = c_4_t*e_1_r2_y
-    v_1_t_2 = e_1_r2_y*s_4
-    e_1_r6_x = c_5_t*v_1_t_2 + e_1_r2_x*s_5
-    e_1_r6_y = s_5*v_1_t_2 - c_5_t*e_1_r2_x
-    # (rrrrrr-V5) from joint 1 to the connection point, along the links
-    r_1_r1_x = r_1_z*s_2 - c_2_t*r_2_r0_x
-    r_1_r1_y = -c_2_t*r_1_z - r_2_r0_x*s_2
-    r_1_r2_x = c_3*r_1_r1_x + r_1_r1_y*s_3
-    r_1_r2_y = c_3*r_1_r1_y - r_1_r1_x*s_3
-    r_1_t = r_4_t_3*s_4
-    r_1_r4_x = r_1_t - c_4_t*r_1_r2_y
-    r_1_t_2 = c_4_t*r_4_t_3
-    r_1_r4_y = -r_1_t_2 - r_1_r2_y*s_4
-    r_1_r6_x = r_1_r2_x*s_5 - c_5_t*r_1_r4_y
-    r_1_r6_y = -c_5_t*r_1_r2_x - r_1_r4_y*s_5
-    # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-    v_1_x = e_1_r6_y*r_1_r4_x + r_1_r6_y*v_1_t
-    v_1_y = -e_1_r6_x*r_1_r4_x - r_1_r6_x*v_1_t
-    v_1_z = e_1_r6_x*r_1_r6_y - e_1_r6_y*r_1_r6_x
-    # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-    v_2_t = c_4_t*c_5_t
-    v_2_t_2 = c_4_t*s_5
-    # (rrrrrr-V4) from joint 2 to the connection point, along the links
-    r_2_r0_x_2 = c_3*r_2_x + r_3_r0_y*s_3
-    r_2_r0_y = c_3*r_3_r0_y - r_2_x*s_3
-    r_2_r2_x = r_1_t - c_4_t*r_2_r0_y
-    r_2_r2_y = -r_1_t_2 - r_2_r0_y*s_4
-    r_2_r4_x = r_2_r0_x_2*s_5 - c_5_t*r_2_r2_y
-    r_2_r4_y = -c_5_t*r_2_r0_x_2 - r_2_r2_y*s_5
-    # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-    v_2_x = r_2_r2_x*v_2_t_2 - r_2_r4_y*s_4
-    v_2_y = r_2_r4_x*s_4 - r_2_r2_x*v_2_t
-    v_2_z = r_2_r4_y*v_2_t - r_2_r4_x*v_2_t_2
-    # (rrrrrr-V3) from joint 3 to the connection point, along the links
-    r_3_r1_x = r_1_t - c_4_t*r_4_t_2
-    r_3_r1_y = -r_1_t_2 - r_4_t_2*s_4
-    r_3_r3_x = r_3_x*s_5 - c_5_t*r_3_r1_y
-    r_3_r3_y = -c_5_t*r_3_x - r_3_r1_y*s_5
-    # (rrrrrr-V8) velocity of the connection point per rate of joint 3
-    v_3_x = r_3_r1_x*v_2_t_2 - r_3_r3_y*s_4
-    v_3_y = r_3_r3_x*s_4 - r_3_r1_x*v_2_t
-    v_3_z = r_3_r3_y*v_2_t - r_3_r3_x*v_2_t_2
-    # (rrrrrr-V9) velocity of the connection point per rate of joint 4
-    v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t = c_4_t*s_3
-    w_1_t_2 = c_3*c_4_t
-    axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_2 - c_2_t*w_1_t
-    axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_2 + s_2*w_1_t
-    # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
-    c_1_t = sin(q_1)
-    # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
-    s_1 = cos(q_1)
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    axis_z_rrrrrr_axes5_r7_x = -axis_z_rrrrrr_axes5_r5_x*s_1 - c_1_t*s_4
-    axis_z_rrrrrr_axes5_r7_y = s_1*s_4 - axis_z_rrrrrr_axes5_r5_x*c_1_t
-    axis_z_rrrrrr_axes5_in_base_x = (
-    axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx + axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy
-        + axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
-    )
-    axis_z_rrrrrr_axes5_in_base_y = (
-    axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx + axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy
-        + axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
-    )
-    axis_z_rrrrrr_axes5_in_base_z = (
-    axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx + axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy
-        + axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
-    )
-    w_1_t_3 = s_4*s_5
-    axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_3
-    axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_3 - c_5_t*s_3
-    axis_y_rrrrrr_axes5_r5_x = -axis_y_rrrrrr_axes5_r4_x*c_2_t - axis_y_rrrrrr_axes5_r4_y*s_2
-    axis_y_rrrrrr_axes5_r5_y = axis_y_rrrrrr_axes5_r4_x*s_2 - axis_y_rrrrrr_axes5_r4_y*c_2_t
-    axis_y_rrrrrr_axes5_r7_x = -axis_y_rrrrrr_axes5_r5_x*s_1 - c_1_t*v_2_t_2
-    axis_y_rrrrrr_axes5_r7_y = s_1*v_2_t_2 - axis_y_rrrrrr_axes5_r5_x*c_1_t
-    axis_y_rrrrrr_axes5_in_base_x = (
-    axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx + axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy
-        + axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
-    )
-    axis_y_rrrrrr_axes5_in_base_y = (
-    axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx + axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy
-        + axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
-    )
-    axis_y_rrrrrr_axes5_in_base_z = (
-    axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx + axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy
-        + axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
-    )
-    axis_x_rrrrrr_axes5_x = (
-    axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_z -
-        axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_y
-    )
-    axis_x_rrrrrr_axes5_y = (
-    axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_x -
-        axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_z
-    )
-    axis_x_rrrrrr_axes5_z = (
-    axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_y -
-        axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_x
-    )
-    # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
-    end_p1_r0_x = (
-    rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xy + R_yx*rrrrrr_base_frame_yy +
-        R_zx*rrrrrr_base_frame_zy) +
-        rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xy +
-        R_yy*rrrrrr_base_frame_yy + R_zy*rrrrrr_base_frame_zy) +
-        rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xy +
-        R_yz*rrrrrr_base_frame_yy + R_zz*rrrrrr_base_frame_zy)
-    )
-    end_p1_r0_y = (
-    rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xz + R_yx*rrrrrr_base_frame_yz +
-        R_zx*rrrrrr_base_frame_zz) +
-        rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xz +
-        R_yy*rrrrrr_base_frame_yz + R_zy*rrrrrr_base_frame_zz) +
-        rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xz +
-        R_yz*rrrrrr_base_frame_yz + R_zz*rrrrrr_base_frame_zz)
-    )
-    end_p1_r0_z = (
-    rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xx + R_yx*rrrrrr_base_frame_yx +
-        R_zx*rrrrrr_base_frame_zx) +
-        rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xx +
-        R_yy*rrrrrr_base_frame_yx + R_zy*rrrrrr_base_frame_zx) +
-        rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xx +
-        R_yz*rrrrrr_base_frame_yx + R_zz*rrrrrr_base_frame_zx)
-    )
-    end_p1_r1_x = end_p1_r0_y*s_1 - c_1_t*end_p1_r0_x
-    end_p1_r1_y = -c_1_t*end_p1_r0_y - end_p1_r0_x*s_1
-    end_p1_r3_x = end_p1_r0_z*s_2 - c_2_t*end_p1_r1_y
-    end_p1_r3_y = -c_2_t*end_p1_r0_z - end_p1_r1_y*s_2
-    end_p1_r4_x = c_3*end_p1_r3_x + end_p1_r3_y*s_3
-    end_p1_r4_y = c_3*end_p1_r3_y - end_p1_r3_x*s_3
-    end_p1_r6_x = end_p1_r1_x*s_4 - c_4_t*end_p1_r4_y
-    end_p1_r6_y = -c_4_t*end_p1_r1_x - end_p1_r4_y*s_4
-    end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
-    end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_4 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
-    w_1_t_5 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
-    w_1_t_6 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
-    w_1_t_7 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
-    w_1_t_8 = size*w_1_t_4
-    w_1_t_9 = size*w_1_t_6
-    w_1_t_10 = size*w_1_t_5
-    w_1_t_11 = size*w_1_t_7
-    w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
-    w_1_t_13 = c_5_t*end_p1_r6_x*size
-    w_1_t_14 = end_p1_r8_y*size
-    w_1_t_15 = sqrt(size_t + w_1_t_14*w_1_t_14)
-    inv_w_1_t_69 = 1.0/w_1_t_15
-    w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
-    w_1_t_17 = inv_w_1_t_69*w_1_t_14
-    w_1_t_18 = w_1_t_13*w_1_t_17
-    w_1_t_19 = w_1_t_16*w_1_t_18
-    w_1_t_20 = w_1_t_13 - w_1_t_17*w_1_t_18
-    w_1_t_21 = v_1_y*w_1_t_16 - w_1_t_17*w_1_t_9
-    w_1_t_22 = v_1_y - w_1_t_16*w_1_t_21
-    w_1_t_23 = w_1_t_9 + w_1_t_17*w_1_t_21
-    w_1_t_24 = w_1_t_11*w_1_t_17
-    w_1_t_25 = v_2_y*w_1_t_16 - w_1_t_24
-    w_1_t_26 = v_2_y - w_1_t_16*w_1_t_25
-    w_1_t_27 = w_1_t_11 + w_1_t_17*w_1_t_25
-    w_1_t_28 = w_1_t_24 - v_3_y*w_1_t_16
-    w_1_t_29 = v_3_y + w_1_t_16*w_1_t_28
-    w_1_t_30 = w_1_t_11 - w_1_t_17*w_1_t_28
-    w_1_t_31 = sqrt(v_4_z*v_4_z + w_1_t_12*w_1_t_12 + w_1_t_19*w_1_t_19 + w_1_t_20*w_1_t_20)
-    inv_w_1_t_101 = 1.0/w_1_t_31
-    w_1_t_32 = inv_w_1_t_101*w_1_t_19
-    w_1_t_33 = inv_w_1_t_101*v_4_z
-    w_1_t_34 = inv_w_1_t_101*w_1_t_12
-    w_1_t_35 = inv_w_1_t_101*w_1_t_20
-    w_1_t_36 = w_1_t_22*w_1_t_32 + w_1_t_23*w_1_t_35 + w_1_t_34*w_1_t_8 - v_1_z*w_1_t_33
-    w_1_t_37 = w_1_t_32*w_1_t_36 - w_1_t_22
-    w_1_t_38 = v_1_z + w_1_t_33*w_1_t_36
-    w_1_t_39 = w_1_t_34*w_1_t_36 - w_1_t_8
-    w_1_t_40 = w_1_t_35*w_1_t_36 - w_1_t_23
-    w_1_t_41 = w_1_t_10*w_1_t_34
-    w_1_t_42 = w_1_t_41 + w_1_t_26*w_1_t_32 + w_1_t_27*w_1_t_35 - v_2_z*w_1_t_33
-    w_1_t_43 = w_1_t_32*w_1_t_42 - w_1_t_26
-    w_1_t_44 = v_2_z + w_1_t_33*w_1_t_42
-    w_1_t_45 = w_1_t_34*w_1_t_42 - w_1_t_10
-    w_1_t_46 = w_1_t_35*w_1_t_42 - w_1_t_27
-    w_1_t_47 = w_1_t_41 + w_1_t_29*w_1_t_32 + w_1_t_30*w_1_t_35 - v_3_z*w_1_t_33
-    w_1_t_48 = w_1_t_32*w_1_t_47 - w_1_t_29
-    w_1_t_49 = v_3_z + w_1_t_33*w_1_t_47
-    w_1_t_50 = w_1_t_34*w_1_t_47 - w_1_t_10
-    w_1_t_51 = w_1_t_35*w_1_t_47 - w_1_t_30
-    w_1_t_52 = (
-    sqrt(v_1_x*v_1_x + w_1_t_37*w_1_t_37 + w_1_t_38*w_1_t_38 + w_1_t_39*w_1_t_39 +
-        w_1_t_40*w_1_t_40)
-    )
-    inv_w_1_t_150 = 1.0/w_1_t_52
-    w_1_t_53 = inv_w_1_t_150*v_1_x
-    w_1_t_54 = inv_w_1_t_150*w_1_t_37
-    w_1_t_55 = inv_w_1_t_150*w_1_t_38
-    w_1_t_56 = inv_w_1_t_150*w_1_t_39
-    w_1_t_57 = inv_w_1_t_150*w_1_t_40
-    w_1_t_58 = (
-    v_2_x*w_1_t_53 + w_1_t_43*w_1_t_54 + w_1_t_44*w_1_t_55 + w_1_t_45*w_1_t_56 + w_1_t_46*w_1_t_57
-    )
-    w_1_t_59 = v_2_x - w_1_t_53*w_1_t_58
-    w_1_t_60 = w_1_t_43 - w_1_t_54*w_1_t_58
-    w_1_t_61 = w_1_t_44 - w_1_t_55*w_1_t_58
-    w_1_t_62 = w_1_t_45 - w_1_t_56*w_1_t_58
-    w_1_t_63 = w_1_t_46 - w_1_t_57*w_1_t_58
-    w_1_t_64 = (
-    v_3_x*w_1_t_53 + w_1_t_48*w_1_t_54 + w_1_t_49*w_1_t_55 + w_1_t_50*w_1_t_56 + w_1_t_51*w_1_t_57
-    )
-    w_1_t_65 = v_3_x - w_1_t_53*w_1_t_64
-    w_1_t_66 = w_1_t_48 - w_1_t_54*w_1_t_64
-    w_1_t_67 = w_1_t_49 - w_1_t_55*w_1_t_64
-    w_1_t_68 = w_1_t_50 - w_1_t_56*w_1_t_64
-    w_1_t_69 = w_1_t_51 - w_1_t_57*w_1_t_64
-    w_1_t_70 = (
-    sqrt(w_1_t_59*w_1_t_59 + w_1_t_60*w_1_t_60 + w_1_t_61*w_1_t_61 + w_1_t_62*w_1_t_62 +
-        w_1_t_63*w_1_t_63)
-    )
-    inv_w_1_t_194 = 1.0/w_1_t_70
-    w_1_t_71 = inv_w_1_t_194*w_1_t_59
-    w_1_t_72 = inv_w_1_t_194*w_1_t_60
-    w_1_t_73 = inv_w_1_t_194*w_1_t_61
-    w_1_t_74 = inv_w_1_t_194*w_1_t_62
-    w_1_t_75 = inv_w_1_t_194*w_1_t_63
-    w_1_t_76 = (
-    w_1_t_65*w_1_t_71 + w_1_t_66*w_1_t_72 + w_1_t_67*w_1_t_73 + w_1_t_68*w_1_t_74 +
-        w_1_t_69*w_1_t_75
-    )
-    w_1_t_77 = w_1_t_65 - w_1_t_71*w_1_t_76
-    w_1_t_78 = w_1_t_66 - w_1_t_72*w_1_t_76
-    w_1_t_79 = w_1_t_67 - w_1_t_73*w_1_t_76
-    w_1_t_80 = w_1_t_68 - w_1_t_74*w_1_t_76
-    w_1_t_81 = w_1_t_69 - w_1_t_75*w_1_t_76
-    w_1_t_82 = (
-    sqrt(w_1_t_77*w_1_t_77 + w_1_t_78*w_1_t_78 + w_1_t_79*w_1_t_79 + w_1_t_80*w_1_t_80 +
-        w_1_t_81*w_1_t_81)
-    )
-    inv_w_1_t_222 = 1.0/w_1_t_82
-    w_1_t_83 = inv_w_1_t_222*w_1_t_77
-    w_1_t_84 = inv_w_1_t_222*w_1_t_78
-    w_1_t_85 = inv_w_1_t_222*w_1_t_79
-    w_1_t_86 = inv_w_1_t_222*w_1_t_80
-    w_1_t_87 = inv_w_1_t_222*w_1_t_81
-    # (rrrrrr-V16) force part of reciprocal wrench 2
-    w_2_t = inv_w_1_t_194*inv_w_1_t_222*w_1_t_76
-    w_2_t_2 = inv_w_1_t_194*w_1_t_71 - w_1_t_83*w_2_t
-    w_2_t_3 = inv_w_1_t_194*w_1_t_72 - w_1_t_84*w_2_t
-    w_2_t_4 = w_1_t_85*w_2_t - inv_w_1_t_194*w_1_t_73
-    w_2_t_5 = size*(inv_w_1_t_194*w_1_t_74 - w_1_t_86*w_2_t)
-    w_2_t_6 = size*(inv_w_1_t_194*w_1_t_75 - w_1_t_87*w_2_t)
-    # (rrrrrr-V29) moment part of reciprocal wrench 2
-    o_2_t = end_p1_r8_y*w_2_t_5
-    o_2_t_2 = end_p1_r8_y*w_2_t_6
-    o_2_y = end_p1_r8_x*w_2_t_5 - end_p1_r6_x*w_2_t_6
-    # (M2) coupling block of M
-    q_in_base_x = (
-    R_xx*rrrrrr_platform_point_x + R_xy*rrrrrr_platform_point_y + R_xz*rrrrrr_platform_point_z
-    )
-    q_in_base_y = (
-    R_yx*rrrrrr_platform_point_x + R_yy*rrrrrr_platform_point_y + R_yz*rrrrrr_platform_point_z
-    )
-    q_in_base_z = (
-    R_zx*rrrrrr_platform_point_x + R_zy*rrrrrr_platform_point_y + R_zz*rrrrrr_platform_point_z
-    )
-    # (rrrrrr-V1) velocity of the connection point
-    S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-    S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-    S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-    S_dot_x = S_dot_t + t_dot_x
-    S_dot_y = S_dot_t_2 + t_dot_y
-    S_dot_z = S_dot_t_3 + t_dot_z
-    S_dot_tip_x = (
-    S_dot_x*axis_x_rrrrrr_axes5_x + S_dot_y*axis_x_rrrrrr_axes5_y + S_dot_z*axis_x_rrrrrr_axes5_z
-    )
-    S_dot_tip_y = (
-    S_dot_x*axis_y_rrrrrr_axes5_in_base_x + S_dot_y*axis_y_rrrrrr_axes5_in_base_y +
-        S_dot_z*axis_y_rrrrrr_axes5_in_base_z
-    )
-    S_dot_tip_z = (
-    S_dot_x*axis_z_rrrrrr_axes5_in_base_x + S_dot_y*axis_z_rrrrrr_axes5_in_base_y +
-        S_dot_z*axis_z_rrrrrr_axes5_in_base_z
-    )
-    # (rrrrrr-A14) rate of moment direction 1
-    omega_tip_x = (
-    axis_x_rrrrrr_axes5_x*omega_x + axis_x_rrrrrr_axes5_y*omega_y + axis_x_rrrrrr_axes5_z*omega_z
-    )
-    omega_tip_y = (
-    axis_y_rrrrrr_axes5_in_base_x*omega_x + axis_y_rrrrrr_axes5_in_base_y*omega_y +
-        axis_y_rrrrrr_axes5_in_base_z*omega_z
-    )
-    omega_tip_z = (
-    axis_z_rrrrrr_axes5_in_base_x*omega_x + axis_z_rrrrrr_axes5_in_base_y*omega_y +
-        axis_z_rrrrrr_axes5_in_base_z*omega_z
-    )
-    nd_m1_t = end_p1_r6_x*omega_tip_y - end_p1_r8_y*omega_tip_z
-    nd_m1_t_2 = end_p1_r8_x*omega_tip_z - end_p1_r6_x*omega_tip_x
-    nd_m1_t_3 = end_p1_r8_y*omega_tip_x - end_p1_r8_x*omega_tip_y
-    # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-    bias_t = rrrrrr_joint2_offset_x*s_2
-    bias_t_2 = c_2_t*rrrrrr_joint2_offset_x
-    d_2_r2_x = bias_t*c_3 - bias_t_2*s_3
-    d_2_r2_y = -bias_t*s_3 - bias_t_2*c_3
-    bias_t_3 = c_4_t*d_2_r2_y
-    bias_t_4 = d_2_r2_y*s_4
-    d_2_r6_x = bias_t_4*c_5_t + d_2_r2_x*s_5
-    d_2_r6_y = bias_t_4*s_5 - c_5_t*d_2_r2_x
-    bias_t_5 = c_3*rrrrrr_joint3_offset_x
-    bias_t_6 = rrrrrr_joint3_offset_x*s_3
-    bias_t_7 = bias_t_6*c_4_t
-    bias_t_8 = bias_t_6*s_4
-    d_3_r4_x = bias_t_5*s_5 - bias_t_8*c_5_t
-    d_3_r4_y = -bias_t_5*c_5_t - bias_t_8*s_5
-    bias_t_9 = rrrrrr_joint4_offset_x*s_5
-    bias_t_10 = c_5_t*rrrrrr_joint4_offset_x
-    bias_t_11 = rrrrrr_joint5_offset_x*s_5
-    bias_t_12 = c_5_t*rrrrrr_joint5_offset_x
-    # (rrrrrr-N16) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
-    g_r1_x = g_r0_y*s_1 - c_1_t*g_r0_x
-    g_r1_y = -c_1_t*g_r0_y - g_r0_x*s_1
-    g_r3_x = g_r0_z*s_2 - c_2_t*g_r1_y
-    g_r3_y = -c_2_t*g_r0_z - g_r1_y*s_2
-    g_r4_x = c_3*g_r3_x + g_r3_y*s_3
-    g_r4_y = c_3*g_r3_y - g_r3_x*s_3
-    # (rrrrrr-V16) force part of reciprocal wrench 2
-    w_2_in_base_x = (
-    axis_x_rrrrrr_axes5_x*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_x*w_2_t_3 -
-        axis_z_rrrrrr_axes5_in_base_x*w_2_t_4
-    )
-    w_2_in_base_y = (
-    axis_x_rrrrrr_axes5_y*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_y*w_2_t_3 -
-        axis_z_rrrrrr_axes5_in_base_y*w_2_t_4
-    )
-    w_2_in_base_z = (
-    axis_x_rrrrrr_axes5_z*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_z*w_2_t_3 -
-        axis_z_rrrrrr_axes5_in_base_z*w_2_t_4
-    )
-    # (rrrrrr-V35) rate of joint 1
-    qd_1_t = nd_m1_t_3*size
-    qd_1_t_2 = nd_m1_t*size
-    qd_1_t_3 = (
-    inv_w_1_t_222*(S_dot_tip_y*w_1_t_84 + qd_1_t*w_1_t_86 + qd_1_t_2*w_1_t_87 -
-        S_dot_tip_x*w_1_t_83 - S_dot_tip_z*w_1_t_85)
-    )
-    qd_1_t_4 = (
-    inv_w_1_t_194*(S_dot_tip_y*w_1_t_72 + qd_1_t*w_1_t_74 + qd_1_t_2*w_1_t_75 -
-        S_dot_tip_x*w_1_t_71 - S_dot_tip_z*w_1_t_73 - qd_1_t_3*w_1_t_76)
-    )
-    qd_1_t_5 = (
-    inv_w_1_t_150*(S_dot_tip_x*w_1_t_53 + S_dot_tip_z*w_1_t_55 + qd_1_t_3*w_1_t_64 +
-        qd_1_t_4*w_1_t_58 - S_dot_tip_y*w_1_t_54 - qd_1_t*w_1_t_56 - qd_1_t_2*w_1_t_57)
-    )
-    qd_1_t_6 = (
-    inv_w_1_t_101*(S_dot_tip_y*w_1_t_32 + qd_1_t*w_1_t_34 + qd_1_t_2*w_1_t_35 + qd_1_t_3*w_1_t_47
-        + qd_1_t_4*w_1_t_42 - S_dot_tip_z*w_1_t_33 - qd_1_t_5*w_1_t_36)
-    )
-    qd_1_t_7 = (
-    inv_w_1_t_69*(S_dot_tip_y*w_1_t_16 + qd_1_t_4*w_1_t_25 + qd_1_t_6*w_1_t_18 - qd_1_t_2*w_1_t_17
-        - qd_1_t_3*w_1_t_28 - qd_1_t_5*w_1_t_21)
-    )
-    # (rrrrrr-V40) angular velocity of link 1
-    omega_1_t = qd_1_t_5*s_2
-    omega_1_t_2 = c_2_t*qd_1_t_5
-    # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_x = omega_1_t_2*qd_1_t_4
-    zeta_2_y = omega_1_t*qd_1_t_4
-    # (rrrrrr-V42) angular velocity of link 2
-    omega_2_r0_x = c_3*omega_1_t - omega_1_t_2*s_3
-    omega_2_r0_y = -c_3*omega_1_t_2 - omega_1_t*s_3
-    # (rrrrrr-A5) angular acceleration of link 3 from the turning of axis 3
-    zeta_3_x = omega_2_r0_y*qd_1_t_3
-    zeta_3_y = omega_2_r0_x*qd_1_t_3
-    # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_r0_x = c_3*zeta_2_x + s_3*zeta_2_y
-    zeta_2_r0_y = c_3*zeta_2_y - s_3*zeta_2_x
-    # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
-    beta_3_x = zeta_2_r0_x - zeta_3_x
-    beta_3_y = zeta_2_r0_y + zeta_3_y
-    # (rrrrrr-V44) angular velocity of link 3
-    omega_3_z = -qd_1_t_3 - qd_1_t_4
-    omega_3_r1_x = omega_3_z*s_4 - c_4_t*omega_2_r0_y
-    omega_3_r1_y = -c_4_t*omega_3_z - omega_2_r0_y*s_4
-    # (rrrrrr-A7) angular acceleration of link 4 from the turning of axis 4
-    zeta_4_x = omega_3_r1_y*qd_1_t_6
-    zeta_4_y = omega_3_r1_x*qd_1_t_6
-    # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
-    beta_3_t = beta_3_y*c_4_t
-    beta_3_t_2 = beta_3_y*s_4
-    # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
-    beta_4_x = -beta_3_t - zeta_4_x
-    beta_4_y = zeta_4_y - beta_3_t_2
-    # (rrrrrr-V46) angular velocity of link 4
-    omega_4_z = omega_2_r0_x - qd_1_t_6
-    omega_4_t = c_5_t*omega_3_r1_y
-    omega_4_r1_x = omega_4_z*s_5 - omega_4_t
-    omega_4_t_2 = omega_3_r1_y*s_5
-    omega_4_r1_y = -omega_4_t_2 - c_5_t*omega_4_z
-    # (rrrrrr-A9) angular acceleration of link 5 from the turning of axis 5
-    zeta_5_x = omega_4_r1_y*qd_1_t_7
-    zeta_5_y = omega_4_r1_x*qd_1_t_7
-    # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
-    beta_4_t = beta_3_x*s_5
-    beta_4_r1_x = beta_4_t - beta_4_y*c_5_t
-    beta_4_t_2 = beta_3_x*c_5_t
-    beta_4_r1_y = -beta_4_t_2 - beta_4_y*s_5
-    # (rrrrrr-A10) angular acceleration of link 5 at zero joint accelerations
-    beta_5_x = beta_4_r1_x + zeta_5_x
-    beta_5_y = beta_4_r1_y - zeta_5_y
-    # (rrrrrr-V48) angular velocity of link 5
-    omega_5_z = omega_3_r1_x + qd_1_t_7
-    # (rrrrrr-A14) rate of moment direction 1
-    nd_m1_t_4 = end_p1_r8_y*omega_4_r1_y
-    nd_m1_x = -nd_m1_t_2 - end_p1_r6_x*omega_4_r1_x
-    nd_m1_y = nd_m1_t - end_p1_r6_x*omega_4_r1_y
-    # (rrrrrr-A15) bias of the angular acceleration along moment direction 1
-    nu_1_t = beta_5_x*end_p1_r8_y - beta_5_y*end_p1_r8_x
-    nu_1_t_2 = omega_4_r1_x - omega_tip_x
-    nu_1_t_3 = omega_4_r1_y - omega_tip_y
-    nu_1_t_4 = omega_5_z - omega_tip_z
-    nu_1_t_5 = (
-    nd_m1_x*nu_1_t_2 + nd_m1_y*nu_1_t_3 + nu_1_t_4*(nd_m1_t_4 + end_p1_r8_x*omega_4_r1_x)
-    )
-    nu_1 = nu_1_t - nu_1_t_5
-    # (rrrrrr-A18) acceleration with which the joints turn along moment direction 1
-    alpha_tip_y = (
-    alpha_x*axis_y_rrrrrr_axes5_in_base_x + alpha_y*axis_y_rrrrrr_axes5_in_base_y +
-        alpha_z*axis_y_rrrrrr_axes5_in_base_z
-    )
-    etad_1_t = (
-    end_p1_r8_y*(alpha_x*axis_x_rrrrrr_axes5_x + alpha_y*axis_x_rrrrrr_axes5_y +
-        alpha_z*axis_x_rrrrrr_axes5_z) - alpha_tip_y*end_p1_r8_x
-    )
-    etad_1 = nu_1 - etad_1_t
-    # (rrrrrr-A16) rate of moment direction 2
-    nd_m2_y = -nd_m1_t_3 - end_p1_r8_x*omega_4_r1_y
-    nd_m2_z = nd_m1_t_2 - end_p1_r8_x*omega_5_z
-    # (rrrrrr-A17) bias of the angular acceleration along moment direction 2
-    nu_2_t = beta_5_y*end_p1_r6_x - beta_4_x*end_p1_r8_y
-    nu_2_t_2 = nd_m2_y*nu_1_t_3 + nd_m2_z*nu_1_t_4 + nu_1_t_2*(nd_m1_t_4 + end_p1_r6_x*omega_5_z)
-    nu_2 = nu_2_t - nu_2_t_2
-    # (rrrrrr-A19) acceleration with which the joints turn along moment direction 2
-    etad_2_t = (
-    alpha_tip_y*end_p1_r6_x - end_p1_r8_y*(alpha_x*axis_z_rrrrrr_axes5_in_base_x +
-        alpha_y*axis_z_rrrrrr_axes5_in_base_y + alpha_z*axis_z_rrrrrr_axes5_in_base_z)
-    )
-    etad_2 = nu_2 - etad_2_t
-    # (rrrrrr-A2) acceleration of the connection point without its centripetal part
-    a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-    a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-    a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-    # (rrrrrr-A3) acceleration of the connection point
-    S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-    S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-    S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-    # (rrrrrr-V43) centripetal tensor of link 2
-    W_2_t = omega_1_t*omega_1_t
-    W_2_t_2 = omega_1_t_2*omega_1_t_2
-    W_2_t_3 = qd_1_t_4*qd_1_t_4
-    W_2_xy = omega_1_t*omega_1_t_2
-    # (rrrrrr-V45) centripetal tensor of link 3
-    W_3_t = omega_2_r0_x*omega_2_r0_x
-    W_3_t_2 = omega_2_r0_y*omega_2_r0_y
-    W_3_t_3 = omega_3_z*omega_3_z
-    W_3_xx = W_3_t_2 + W_3_t_3
-    W_3_xy = omega_2_r0_x*omega_2_r0_y
-    W_3_xz = omega_2_r0_x*omega_3_z
-    W_3_yz = omega_2_r0_y*omega_3_z
-    # (rrrrrr-V47) centripetal tensor of link 4
-    W_4_t = omega_3_r1_x*omega_3_r1_x
-    W_4_t_2 = omega_3_r1_y*omega_3_r1_y
-    W_4_t_3 = omega_4_z*omega_4_z
-    W_4_xy = omega_3_r1_x*omega_3_r1_y
-    W_4_xz = omega_3_r1_x*omega_4_z
-    W_4_yz = omega_3_r1_y*omega_4_z
-    # (rrrrrr-V49) centripetal tensor of link 5
-    W_5_t = omega_4_r1_x*omega_4_r1_x
-    W_5_t_2 = omega_4_r1_y*omega_4_r1_y
-    W_5_t_3 = omega_5_z*omega_5_z
-    W_5_xx = W_5_t_2 + W_5_t_3
-    W_5_xy = omega_4_r1_x*omega_4_r1_y
-    W_5_xz = omega_4_r1_x*omega_5_z
-    W_5_yz = omega_4_r1_y*omega_5_z
-    # (rrrrrr-V40) angular velocity of link 1
-    omega_1_x = e_1_r6_x*qd_1_t_5
-    omega_1_y = e_1_r6_y*qd_1_t_5
-    omega_1_z = qd_1_t_5*v_1_t
-    # (rrrrrr-V41) centripetal tensor of link 1
-    W_1_t = omega_1_x*omega_1_x
-    W_1_t_2 = omega_1_y*omega_1_y
-    W_1_t_3 = omega_1_z*omega_1_z
-    W_1_xy = omega_1_x*omega_1_y
-    W_1_xz = omega_1_x*omega_1_z
-    W_1_yz = omega_1_y*omega_1_z
-    # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_t = c_4_t*zeta_2_r0_y
-    zeta_2_t_2 = s_4*zeta_2_r0_y
-    zeta_2_r4_x = c_5_t*zeta_2_t_2 + s_5*zeta_2_r0_x
-    zeta_2_r4_y = s_5*zeta_2_t_2 - c_5_t*zeta_2_r0_x
-    # (rrrrrr-V42) angular velocity of link 2
-    omega_2_x = omega_1_x - qd_1_t_4*v_2_t
-    omega_2_y = omega_1_y - qd_1_t_4*v_2_t_2
-    omega_2_z = -omega_1_z - qd_1_t_4*s_4
-    # (rrrrrr-V43) centripetal tensor of link 2
-    W_2_t_4 = omega_2_x*omega_2_x
-    W_2_t_5 = omega_2_y*omega_2_y
-    W_2_t_6 = omega_2_z*omega_2_z
-    W_2_xy_2 = omega_2_x*omega_2_y
-    W_2_xz = omega_2_x*omega_2_z
-    W_2_yz = omega_2_y*omega_2_z
-    # (rrrrrr-V44) angular velocity of link 3
-    omega_3_r3_x = omega_2_r0_x*s_5 - omega_4_t
-    omega_3_r3_y = -omega_4_t_2 - c_5_t*omega_2_r0_x
-    # (rrrrrr-V45) centripetal tensor of link 3
-    W_3_xy_2 = omega_3_r3_x*omega_3_r3_y
-    # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-    bias_t_13 = W_5_xy + beta_4_x
-    bias_x = (
-    W_1_xy*d_2_r6_y + W_1_xz*bias_t_3 + bias_t_7*(W_2_xz + zeta_2_r4_y) + d_3_r4_y*(W_2_xy_2 +
-        zeta_2_t) - W_5_xx*rrrrrr_platform_joint_offset_x - bias_t_10*(W_3_xy_2 + beta_3_t) -
-        bias_t_11*(W_4_t + W_5_t_2) - bias_t_12*(W_5_xy - beta_4_x) - bias_t_9*(W_4_t +
-        omega_3_r3_y*omega_3_r3_y) - d_2_r6_x*(W_1_t_2 + W_1_t_3) - d_3_r4_x*(W_2_t_5 + W_2_t_6)
-    )
-    bias_y = (
-    W_1_xy*d_2_r6_x + W_1_yz*bias_t_3 + bias_t_10*(W_4_t + omega_3_r3_x*omega_3_r3_x) +
-        bias_t_11*bias_t_13 + bias_t_12*(W_4_t + W_5_t) + bias_t_13*rrrrrr_platform_joint_offset_x
-        + bias_t_7*(W_2_yz - zeta_2_r4_x) + bias_t_9*(W_3_xy_2 - beta_3_t) + d_3_r4_x*(W_2_xy_2 -
-        zeta_2_t) - d_2_r6_y*(W_1_t + W_1_t_3) - d_3_r4_y*(W_2_t_4 + W_2_t_6)
-    )
-    bias_z = (
-    bias_t_11*(omega_3_r1_x*omega_4_r1_x - beta_4_r1_y) + bias_t_3*(W_1_t + W_1_t_2) +
-        bias_t_9*(beta_4_t_2 + omega_3_r1_x*omega_3_r3_x - beta_3_t_2*s_5) + d_3_r4_x*(W_2_xz -
-        zeta_2_r4_y) + d_3_r4_y*(W_2_yz + zeta_2_r4_x) + rrrrrr_platform_joint_offset_x*(W_5_xz -
-        beta_5_y) - W_1_xz*d_2_r6_x - W_1_yz*d_2_r6_y - bias_t_10*(beta_4_t + beta_3_t_2*c_5_t +
-        omega_3_r1_x*omega_3_r3_y) - bias_t_12*(beta_4_r1_x + omega_3_r1_x*omega_4_r1_y) -
-        bias_t_7*(W_2_t_4 + W_2_t_5)
-    )
-    # (rrrrrr-A3) acceleration of the connection point
-    S_ddot_tip_x = (
-    S_ddot_x*axis_x_rrrrrr_axes5_x + S_ddot_y*axis_x_rrrrrr_axes5_y +
-        S_ddot_z*axis_x_rrrrrr_axes5_z
-    )
-    S_ddot_tip_y = (
-    S_ddot_x*axis_y_rrrrrr_axes5_in_base_x + S_ddot_y*axis_y_rrrrrr_axes5_in_base_y +
-        S_ddot_z*axis_y_rrrrrr_axes5_in_base_z
-    )
-    S_ddot_tip_z = (
-    S_ddot_x*axis_z_rrrrrr_axes5_in_base_x + S_ddot_y*axis_z_rrrrrr_axes5_in_base_y +
-        S_ddot_z*axis_z_rrrrrr_axes5_in_base_z
-    )
-    # (rrrrrr-A12) acceleration of the connection point left to the joint accelerations
-    rel_x = S_ddot_tip_x - bias_x
-    rel_y = S_ddot_tip_y - bias_y
-    rel_z = S_ddot_tip_z - bias_z
-    # (rrrrrr-A20) acceleration of joint 1
-    qdd_1_t = etad_1*size
-    qdd_1_t_2 = etad_2*size
-    qdd_1_t_3 = (
-    inv_w_1_t_222*(qdd_1_t*w_1_t_86 + qdd_1_t_2*w_1_t_87 + rel_x*w_1_t_83 + rel_z*w_1_t_85 -
-        rel_y*w_1_t_84)
-    )
-    qdd_1_t_4 = (
-    inv_w_1_t_194*(qdd_1_t*w_1_t_74 + qdd_1_t_2*w_1_t_75 + rel_x*w_1_t_71 + rel_z*w_1_t_73 -
-        qdd_1_t_3*w_1_t_76 - rel_y*w_1_t_72)
-    )
-    qdd_1_t_5 = (
-    inv_w_1_t_150*(qdd_1_t_3*w_1_t_64 + qdd_1_t_4*w_1_t_58 + rel_y*w_1_t_54 - qdd_1_t*w_1_t_56 -
-        qdd_1_t_2*w_1_t_57 - rel_x*w_1_t_53 - rel_z*w_1_t_55)
-    )
-    qdd_1_t_6 = (
-    inv_w_1_t_101*(qdd_1_t*w_1_t_34 + qdd_1_t_2*w_1_t_35 + qdd_1_t_3*w_1_t_47 + qdd_1_t_4*w_1_t_42
-        + rel_z*w_1_t_33 - qdd_1_t_5*w_1_t_36 - rel_y*w_1_t_32)
-    )
-    # (rrrrrr-N21) acceleration of the reference point of link 5, less gravity
-    acc_5_x = (
-    S_ddot_tip_x - axis_x_rrrrrr_axes5_x*gravity_x - axis_x_rrrrrr_axes5_y*gravity_y -
-        axis_x_rrrrrr_axes5_z*gravity_z
-    )
-    acc_5_y = (
-    S_ddot_tip_y - axis_y_rrrrrr_axes5_in_base_x*gravity_x -
-        axis_y_rrrrrr_axes5_in_base_y*gravity_y - axis_y_rrrrrr_axes5_in_base_z*gravity_z
-    )
-    acc_5_z = (
-    S_ddot_tip_z - axis_z_rrrrrr_axes5_in_base_x*gravity_x -
-        axis_z_rrrrrr_axes5_in_base_y*gravity_y - axis_z_rrrrrr_axes5_in_base_z*gravity_z
-    )
-    # (rrrrrr-A30) angular acceleration of link 1
-    alpha_1_t = qdd_1_t_5*s_2
-    alpha_1_t_2 = c_2_t*qdd_1_t_5
-    # (rrrrrr-A34) angular acceleration of link 2
-    alpha_2_x = zeta_2_x - alpha_1_t
-    alpha_2_y = alpha_1_t_2 + zeta_2_y
-    # (rrrrrr-A36) acceleration tensor of link 2
-    B_2_xy = -W_2_xy - qdd_1_t_4
-    B_2_yx = qdd_1_t_4 - W_2_xy
-    B_2_zx = -alpha_2_y - zeta_2_y
-    B_2_zy = alpha_2_x + zeta_2_x
-    # (rrrrrr-A54) acceleration of the origin of joint 3
-    a_o3_t = rrrrrr_joint3_offset_x*(W_2_t_2 + W_2_t_3)
-    a_o3_t_2 = B_2_yx*rrrrrr_joint3_offset_x
-    a_o3_t_3 = B_2_zx*rrrrrr_joint3_offset_x
-    # (rrrrrr-A38) angular acceleration of link 3
-    alpha_3_x = alpha_2_x*c_3 + alpha_2_y*s_3 - zeta_3_x
-    alpha_3_y = zeta_3_y + alpha_2_y*c_3 - alpha_2_x*s_3
-    alpha_3_z = qdd_1_t_3 + qdd_1_t_4
-    # (rrrrrr-A40) acceleration tensor of link 3
-    B_3_xy = W_3_xy - alpha_3_z
-    B_3_xz = W_3_xz + alpha_3_y
-    B_3_yx = W_3_xy + alpha_3_z
-    B_3_yz = W_3_yz - alpha_3_x
-    B_3_zx = W_3_xz - alpha_3_y
-    B_3_zy = W_3_yz + alpha_3_x
-    # (rrrrrr-A54) acceleration of the origin of joint 3
-    a_o3_r0_x = a_o3_t_2*s_3 - a_o3_t*c_3
-    a_o3_r0_y = a_o3_t*s_3 + a_o3_t_2*c_3
-    # (rrrrrr-A56) acceleration of the origin of joint 4
-    a_o4_x = a_o3_r0_x - W_3_xx*rrrrrr_joint4_offset_x
-    a_o4_y = a_o3_r0_y + B_3_yx*rrrrrr_joint4_offset_x
-    a_o4_z = a_o3_t_3 + B_3_zx*rrrrrr_joint4_offset_x
-    # (rrrrrr-N15) acceleration of the reference point of link 4, less gravity
-    acc_4_x = a_o4_z*s_4 + c_4_t*g_r4_y - a_o4_y*c_4_t - g_r1_x*s_4
-    acc_4_y = c_4_t*g_r1_x + g_r4_y*s_4 - a_o4_y*s_4 - a_o4_z*c_4_t
-    acc_4_z = a_o4_x - g_r4_x
-    # (rrrrrr-A42) angular acceleration of link 4
-    alpha_4_x = alpha_3_z*s_4 - zeta_4_x - alpha_3_y*c_4_t
-    alpha_4_y = zeta_4_y - alpha_3_y*s_4 - alpha_3_z*c_4_t
-    alpha_4_z = alpha_3_x + qdd_1_t_6
-    # (rrrrrr-A44) acceleration tensor of link 4
-    B_4_xy = W_4_xy - alpha_4_z
-    B_4_xz = W_4_xz + alpha_4_y
-    B_4_yx = W_4_xy + alpha_4_z
-    B_4_yz = W_4_yz - alpha_4_x
-    B_4_zx = W_4_xz - alpha_4_y
-    B_4_zy = W_4_yz + alpha_4_x
-    # (rrrrrr-N72) inertia moment of the links that turn with link 4, about their reference points
-    mu_4_x = (
-    B_4_yx*J_4_xz + B_4_zx*J_4_yz + B_4_zy*Sigma_4_yy - B_4_yz*Sigma_4_zz - J_4_xy*(W_4_t_2 -
-        W_4_t_3) - acc_4_y*h_4_x - acc_4_z*h_4_y
-    )
-    mu_4_y = (
-    B_4_xy*J_4_xy + B_4_xz*Sigma_4_zz + acc_4_x*h_4_x - B_4_zx*Sigma_4_xx - B_4_zy*J_4_yz -
-        J_4_xz*(W_4_t - W_4_t_3) - acc_4_z*h_4_z
-    )
-    mu_4_z = (
-    B_4_yx*Sigma_4_xx + acc_4_x*h_4_y + acc_4_y*h_4_z - B_4_xy*Sigma_4_yy - B_4_xz*J_4_xy -
-        B_4_yz*J_4_xz - J_4_yz*(W_4_t - W_4_t_2)
-    )
-    # (rrrrrr-A46) angular acceleration of link 5
-    alpha_5_x = zeta_5_x + alpha_4_z*s_5 - alpha_4_y*c_5_t
-    alpha_5_y = -zeta_5_y - alpha_4_y*s_5 - alpha_4_z*c_5_t
-    alpha_5_z = (
-    alpha_4_x + inv_w_1_t_69*(qdd_1_t_2*w_1_t_17 + qdd_1_t_3*w_1_t_28 + qdd_1_t_5*w_1_t_21 +
-        rel_y*w_1_t_16 - qdd_1_t_4*w_1_t_25 - qdd_1_t_6*w_1_t_18)
-    )
-    # (rrrrrr-A50) acceleration tensor of link 5
-    B_5_xy = W_5_xy - alpha_5_z
-    B_5_xz = W_5_xz + alpha_5_y
-    B_5_yx = W_5_xy + alpha_5_z
-    B_5_yz = W_5_yz - alpha_5_x
-    B_5_zx = W_5_xz - alpha_5_y
-    B_5_zy = W_5_yz + alpha_5_x
-    # (rrrrrr-N64) inertia moment of the links that turn with link 5, about their reference points
-    mu_5_x = (
-    B_5_yx*J_5_xz + B_5_zy*Sigma_5_yy + J_5_yz*(W_5_t_2 - W_5_t_3) + acc_5_z*h_5_y -
-        B_5_yz*Sigma_5_zz - B_5_zx*J_5_xy - acc_5_y*h_5_z
-    )
-    mu_5_y = (
-    B_5_xz*Sigma_5_zz + B_5_zy*J_5_xy + acc_5_x*h_5_z - B_5_xy*J_5_yz - B_5_zx*Sigma_5_xx -
-        J_5_xz*(W_5_t - W_5_t_3) - acc_5_z*h_5_x
-    )
-    mu_5_z = (
-    B_5_xz*J_5_yz + B_5_yx*Sigma_5_xx + J_5_xy*(W_5_t - W_5_t_2) + acc_5_y*h_5_x -
-        B_5_xy*Sigma_5_yy - B_5_yz*J_5_xz - acc_5_x*h_5_y
-    )
-    # (rrrrrr-N74) moment about joint 4 of the links from 4 outwards, the force at the connection point left out
-    N_4_x = mu_4_x + mu_5_z
-    N_4_y = mu_4_y - c_5_t*mu_5_x - mu_5_y*s_5
-    N_4_z = mu_4_z + mu_5_x*s_5 - c_5_t*mu_5_y
-    # (rrrrrr-N19) inertia force of link 4 less its weight
-    f_4_x = B_4_xz*h_4_x + acc_4_x*rrrrrr_link4_mass - B_4_xy*h_4_y - h_4_z*(W_4_t_2 + W_4_t_3)
-    f_4_y = B_4_yx*h_4_z + B_4_yz*h_4_x + acc_4_y*rrrrrr_link4_mass + h_4_y*(W_4_t + W_4_t_3)
-    f_4_z = B_4_zx*h_4_z + acc_4_z*rrrrrr_link4_mass - B_4_zy*h_4_y - h_4_x*(W_4_t + W_4_t_2)
-    # (rrrrrr-N9) acceleration of the reference point of link 3, less gravity
-    acc_3_x = a_o3_r0_x - g_r4_x
-    acc_3_y = a_o3_r0_y - g_r4_y
-    acc_3_z = a_o3_t_3 - g_r1_x
-    # (rrrrrr-N82) inertia moment of the links that turn with link 3, about their reference points
-    mu_3_x = (
-    B_3_yx*J_3_xz + B_3_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) + acc_3_z*h_3_y -
-        B_3_yz*Sigma_3_zz - B_3_zx*J_3_xy - acc_3_y*h_3_z
-    )
-    mu_3_y = (
-    B_3_xz*Sigma_3_zz + B_3_zy*J_3_xy + acc_3_x*h_3_z - B_3_xy*J_3_yz - B_3_zx*Sigma_3_xx -
-        J_3_xz*(W_3_t - W_3_t_3) - acc_3_z*h_3_x
-    )
-    mu_3_z = (
-    B_3_xz*J_3_yz + B_3_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + acc_3_y*h_3_x -
-        B_3_xy*Sigma_3_yy - B_3_yz*J_3_xz - acc_3_x*h_3_y
-    )
-    # (rrrrrr-N19) inertia force of link 4 less its weight
-    f_4_r0_x = -c_4_t*f_4_x - f_4_y*s_4
-    f_4_r0_y = f_4_x*s_4 - c_4_t*f_4_y
-    # (rrrrrr-N84) moment about joint 3 of the links from 3 outwards, the force at the connection point left out
-    N_3_x = N_4_z + mu_3_x
-    N_3_y = mu_3_y - N_4_x*c_4_t - N_4_y*s_4 - f_4_r0_y*rrrrrr_joint4_offset_x
-    N_3_z = mu_3_z + N_4_x*s_4 + f_4_r0_x*rrrrrr_joint4_offset_x - N_4_y*c_4_t
-    # (rrrrrr-N13) inertia force of link 3 less its weight
-    f_3_x = B_3_xy*h_3_y + B_3_xz*h_3_z + acc_3_x*rrrrrr_link3_mass - W_3_xx*h_3_x
-    f_3_y = B_3_yx*h_3_x + B_3_yz*h_3_z + acc_3_y*rrrrrr_link3_mass - h_3_y*(W_3_t + W_3_t_3)
-    f_3_z = B_3_zx*h_3_x + B_3_zy*h_3_y + acc_3_z*rrrrrr_link3_mass - h_3_z*(W_3_t + W_3_t_2)
-    # (rrrrrr-N86) inertia force of the links from 3 outwards, the last link left out
-    T_3_x = f_3_x + f_4_z
-    T_3_y = f_3_y + f_4_r0_x
-    T_3_z = f_3_z + f_4_r0_y
-    # (rrrrrr-N94) inertia moment of the links that turn with link 2, about their reference points
-    mu_2_x = (
-    B_2_yx*J_2_xz + B_2_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) + g_r3_y*h_2_z - B_2_zx*J_2_xy
-        - Sigma_2_zz*alpha_1_t - g_r1_x*h_2_y
-    )
-    mu_2_y = (
-    B_2_zy*J_2_xy + Sigma_2_zz*alpha_1_t_2 + g_r1_x*h_2_x - B_2_xy*J_2_yz - B_2_zx*Sigma_2_xx -
-        J_2_xz*(W_2_t - W_2_t_3) - g_r3_x*h_2_z
-    )
-    mu_2_z = (
-    B_2_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + J_2_yz*alpha_1_t_2 + g_r3_x*h_2_y -
-        B_2_xy*Sigma_2_yy - J_2_xz*alpha_1_t - g_r3_y*h_2_x
-    )
-    # (rrrrrr-N96) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-    N_2_x = mu_2_x + N_3_x*c_3 - N_3_y*s_3
-    N_2_y = mu_2_y + N_3_x*s_3 + N_3_y*c_3 - T_3_z*rrrrrr_joint3_offset_x
-    N_2_z = N_3_z + mu_2_z + rrrrrr_joint3_offset_x*(T_3_x*s_3 + T_3_y*c_3)
-    # (rrrrrr-N106) inertia moment of the links that turn with link 1, about their reference points
-    mu_1_z = -J_1_xx*qdd_1_t_5 - g_r1_x*h_1_y - g_r1_y*h_1_z
-    # (rrrrrr-N108) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-    N_1_z = mu_1_z + N_2_x*s_2 - N_2_y*c_2_t
-    # (rrrrrr-N114) force at the connection point that balances the leg's inertia and weight along all freedoms
-    G_t = inv_w_1_t_69*mu_5_z
-    G_t_2 = inv_w_1_t_101*(G_t*w_1_t_18 - N_4_z)
-    G_t_3 = inv_w_1_t_150*(G_t*w_1_t_21 + G_t_2*w_1_t_36 - N_1_z)
-    G_t_4 = inv_w_1_t_194*(G_t*w_1_t_25 + G_t_2*w_1_t_42 - N_2_z - G_t_3*w_1_t_58)
-    G_t_5 = (
-    inv_w_1_t_222*(N_3_z + G_t*w_1_t_28 + G_t_3*w_1_t_64 + G_t_4*w_1_t_76 - G_t_2*w_1_t_47)
-    )
-    G_t_6 = size*(G_t_2*w_1_t_34 + G_t_3*w_1_t_56 + G_t_4*w_1_t_74 - G_t_5*w_1_t_86)
-    G_t_7 = (
-    size*(G_t_2*w_1_t_35 + G_t_3*w_1_t_57 + G_t_4*w_1_t_75 - G_t*w_1_t_17 - G_t_5*w_1_t_87)
-    )
-    # (rrrrrr-N130) leg force on the platform without actuation and without the mass at the connection point
-    c_x = (
-    G_t_3*w_1_t_53 + G_t_4*w_1_t_71 + W_5_xx*h_5_x - B_5_xy*h_5_y - B_5_xz*h_5_z - G_t_5*w_1_t_83
-    )
-    c_y = (
-    G_t_5*w_1_t_84 + h_5_y*(W_5_t + W_5_t_3) - B_5_yx*h_5_x - B_5_yz*h_5_z - G_t*w_1_t_16 -
-        G_t_2*w_1_t_32 - G_t_3*w_1_t_54 - G_t_4*w_1_t_72
-    )
-    c_z = (
-    G_t_2*w_1_t_33 + G_t_3*w_1_t_55 + G_t_4*w_1_t_73 + h_5_z*(W_5_t + W_5_t_2) - B_5_zx*h_5_x -
-        B_5_zy*h_5_y - G_t_5*w_1_t_85
-    )
-    # (rrrrrr-N126) moment at the connection point that balances the leg's inertia and weight along all freedoms
-    G_m_t = G_t_6*end_p1_r8_y
-    G_m_t_2 = G_t_7*end_p1_r8_y
-    G_m_y = G_t_7*end_p1_r6_x - G_t_6*end_p1_r8_x
-    # (rrrrrr-N130) leg force on the platform without actuation and without the mass at the connection point
-    c_in_base_x = (
-    axis_x_rrrrrr_axes5_x*c_x + axis_y_rrrrrr_axes5_in_base_x*c_y +
-        axis_z_rrrrrr_axes5_in_base_x*c_z
-    )
-    c_in_base_y = (
-    axis_x_rrrrrr_axes5_y*c_x + axis_y_rrrrrr_axes5_in_base_y*c_y +
-        axis_z_rrrrrr_axes5_in_base_y*c_z
-    )
-    c_in_base_z = (
-    axis_x_rrrrrr_axes5_z*c_x + axis_y_rrrrrr_axes5_in_base_z*c_y +
-        axis_z_rrrrrr_axes5_in_base_z*c_z
-    )
-    # (E5) moment that actuators and external wrench must give
-    R_a_t = (
-    G_m_t_2*axis_z_rrrrrr_axes5_in_base_x + c_in_base_z*q_in_base_y - G_m_t*axis_x_rrrrrr_axes5_x
-        - G_m_y*axis_y_rrrrrr_axes5_in_base_x - c_in_base_y*q_in_base_z
-    )
-    R_a_t_2 = (
-    G_m_t_2*axis_z_rrrrrr_axes5_in_base_y + c_in_base_x*q_in_base_z - G_m_t*axis_x_rrrrrr_axes5_y
-        - G_m_y*axis_y_rrrrrr_axes5_in_base_y - c_in_base_z*q_in_base_x
-    )
-    R_a_t_3 = (
-    G_m_t_2*axis_z_rrrrrr_axes5_in_base_z + c_in_base_y*q_in_base_x - G_m_t*axis_x_rrrrrr_axes5_z
-        - G_m_y*axis_y_rrrrrr_axes5_in_base_z - c_in_base_x*q_in_base_y
-    )
-    # (M8) moment of the column's unit force about the platform origin
-    H_a_2_x = (
-    axis_y_rrrrrr_axes5_in_base_x*o_2_y + axis_z_rrrrrr_axes5_in_base_x*o_2_t_2 +
-        q_in_base_y*w_2_in_base_z - axis_x_rrrrrr_axes5_x*o_2_t - q_in_base_z*w_2_in_base_y
-    )
-    H_a_2_y = (
-    axis_y_rrrrrr_axes5_in_base_y*o_2_y + axis_z_rrrrrr_axes5_in_base_y*o_2_t_2 +
-        q_in_base_z*w_2_in_base_x - axis_x_rrrrrr_axes5_y*o_2_t - q_in_base_x*w_2_in_base_z
-    )
-    H_a_2_z = (
-    axis_y_rrrrrr_axes5_in_base_z*o_2_y + axis_z_rrrrrr_axes5_in_base_z*o_2_t_2 +
-        q_in_base_x*w_2_in_base_y - axis_x_rrrrrr_axes5_z*o_2_t - q_in_base_y*w_2_in_base_x
-    )
-    ok = (abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE * size) & (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) & (abs(w_1_t_82) > _TOLERANCE * size)
-    return (
-    ok, (c_in_base_x, c_in_base_y, c_in_base_z, R_a_t, R_a_t_2, R_a_t_3,), (w_2_in_base_x,
-        w_2_in_base_y, w_2_in_base_z, H_a_2_x, H_a_2_y, H_a_2_z,),
-    )
-
-
-def _required_after(c, s, t, f):
-    f_p_x, f_p_y, f_p_z, mu_p_in_base_x, mu_p_in_base_y, mu_p_in_base_z = s
+    sums = [0.0] * 6
+    for leg, k in legs[0]:
+        (
+        J_1_xx, J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, J_4_xy, J_4_xz, J_4_yz, J_5_xy,
+            J_5_xz, J_5_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy,
+            Sigma_3_zz, Sigma_4_xx, Sigma_4_yy, Sigma_4_zz, Sigma_5_xx, Sigma_5_yy, Sigma_5_zz,
+            g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, h_4_x,
+            h_4_y, h_4_z, h_5_x, h_5_y, h_5_z, rrrrrr_base_frame_xx, rrrrrr_base_frame_xy,
+            rrrrrr_base_frame_xz, rrrrrr_base_frame_yx, rrrrrr_base_frame_yy,
+            rrrrrr_base_frame_yz, rrrrrr_base_frame_zx, rrrrrr_base_frame_zy,
+            rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x, rrrrrr_joint3_offset_x,
+            rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x, rrrrrr_link3_mass, rrrrrr_link4_mass,
+            rrrrrr_platform_joint_axis_platform_x, rrrrrr_platform_joint_axis_platform_y,
+            rrrrrr_platform_joint_axis_platform_z, rrrrrr_platform_joint_offset_x,
+            rrrrrr_platform_point_x, rrrrrr_platform_point_y, rrrrrr_platform_point_z, size,
+            size_t,
+        ) = k
+        q_1 = q[[0, 5, 10, 15, 20, 25][leg]]
+        q_2 = q[[1, 6, 11, 16, 21, 26][leg]]
+        q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
+        q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
+        q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
+        # (rrrrrr-K10) cosine of the angle of joint 5 from its reference direction
+        c_5_t = sin(q_5)
+        # (rrrrrr-K11) sine of the angle of joint 5 from its reference direction
+        s_5 = cos(q_5)
+        # (rrrrrr-V2) from joint 4 to the connection point, along the links
+        r_4_t = c_5_t*rrrrrr_platform_joint_offset_x
+        r_4_z = rrrrrr_joint5_offset_x + rrrrrr_platform_joint_offset_x*s_5
+        # (rrrrrr-K8) cosine of the angle of joint 4 from its reference direction
+        c_4_t = sin(q_4)
+        # (rrrrrr-K9) sine of the angle of joint 4 from its reference direction
+        s_4 = cos(q_4)
+        # (rrrrrr-V2) from joint 4 to the connection point, along the links
+        r_4_t_2 = r_4_t*s_4
+        r_4_t_3 = c_4_t*r_4_t
+        # (rrrrrr-V3) from joint 3 to the connection point, along the links
+        r_3_x = r_4_z + rrrrrr_joint4_offset_x
+        # (rrrrrr-K6) cosine of the angle of joint 3 from its reference direction
+        c_3 = cos(q_3)
+        # (rrrrrr-K7) sine of the angle of joint 3 from its reference direction
+        s_3 = sin(q_3)
+        # (rrrrrr-V3) from joint 3 to the connection point, along the links
+        r_3_r0_y = c_3*r_4_t_2 + r_3_x*s_3
+        # (rrrrrr-V4) from joint 2 to the connection point, along the links
+        r_2_x = rrrrrr_joint3_offset_x + c_3*r_3_x - r_4_t_2*s_3
+        # (rrrrrr-K4) cosine of the angle of joint 2 from its reference direction
+        c_2_t = sin(q_2)
+        # (rrrrrr-K5) sine of the angle of joint 2 from its reference direction
+        s_2 = cos(q_2)
+        # (rrrrrr-V4) from joint 2 to the connection point, along the links
+        r_2_r0_x = -c_2_t*r_2_x - r_3_r0_y*s_2
+        # (rrrrrr-V5) from joint 1 to the connection point, along the links
+        r_1_z = rrrrrr_joint2_offset_x + r_2_x*s_2 - c_2_t*r_3_r0_y
+        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
+        e_1_r2_x = c_3*s_2 - c_2_t*s_3
+        e_1_r2_y = -c_2_t*c_3 - s_2*s_3
+        v_1_t = c_4_t*e_1_r2_y
+        v_1_t_2 = e_1_r2_y*s_4
+        e_1_r6_x = c_5_t*v_1_t_2 + e_1_r2_x*s_5
+        e_1_r6_y = s_5*v_1_t_2 - c_5_t*e_1_r2_x
+        # (rrrrrr-V5) from joint 1 to the connection point, along the links
+        r_1_r1_x = r_1_z*s_2 - c_2_t*r_2_r0_x
+        r_1_r1_y = -c_2_t*r_1_z - r_2_r0_x*s_2
+        r_1_r2_x = c_3*r_1_r1_x + r_1_r1_y*s_3
+        r_1_r2_y = c_3*r_1_r1_y - r_1_r1_x*s_3
+        r_1_t = r_4_t_3*s_4
+        r_1_r4_x = r_1_t - c_4_t*r_1_r2_y
+        r_1_t_2 = c_4_t*r_4_t_3
+        r_1_r4_y = -r_1_t_2 - r_1_r2_y*s_4
+        r_1_r6_x = r_1_r2_x*s_5 - c_5_t*r_1_r4_y
+        r_1_r6_y = -c_5_t*r_1_r2_x - r_1_r4_y*s_5
+        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
+        v_1_x = e_1_r6_y*r_1_r4_x + r_1_r6_y*v_1_t
+        v_1_y = -e_1_r6_x*r_1_r4_x - r_1_r6_x*v_1_t
+        v_1_z = e_1_r6_x*r_1_r6_y - e_1_r6_y*r_1_r6_x
+        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
+        v_2_t = c_4_t*c_5_t
+        v_2_t_2 = c_4_t*s_5
+        # (rrrrrr-V4) from joint 2 to the connection point, along the links
+        r_2_r0_x_2 = c_3*r_2_x + r_3_r0_y*s_3
+        r_2_r0_y = c_3*r_3_r0_y - r_2_x*s_3
+        r_2_r2_x = r_1_t - c_4_t*r_2_r0_y
+        r_2_r2_y = -r_1_t_2 - r_2_r0_y*s_4
+        r_2_r4_x = r_2_r0_x_2*s_5 - c_5_t*r_2_r2_y
+        r_2_r4_y = -c_5_t*r_2_r0_x_2 - r_2_r2_y*s_5
+        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
+        v_2_x = r_2_r2_x*v_2_t_2 - r_2_r4_y*s_4
+        v_2_y = r_2_r4_x*s_4 - r_2_r2_x*v_2_t
+        v_2_z = r_2_r4_y*v_2_t - r_2_r4_x*v_2_t_2
+        # (rrrrrr-V3) from joint 3 to the connection point, along the links
+        r_3_r1_x = r_1_t - c_4_t*r_4_t_2
+        r_3_r1_y = -r_1_t_2 - r_4_t_2*s_4
+        r_3_r3_x = r_3_x*s_5 - c_5_t*r_3_r1_y
+        r_3_r3_y = -c_5_t*r_3_x - r_3_r1_y*s_5
+        # (rrrrrr-V8) velocity of the connection point per rate of joint 3
+        v_3_x = r_3_r1_x*v_2_t_2 - r_3_r3_y*s_4
+        v_3_y = r_3_r3_x*s_4 - r_3_r1_x*v_2_t
+        v_3_z = r_3_r3_y*v_2_t - r_3_r3_x*v_2_t_2
+        # (rrrrrr-V9) velocity of the connection point per rate of joint 4
+        v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
+        # (rrrrrr-V13) force part of reciprocal wrench 1
+        w_1_t = c_4_t*s_3
+        w_1_t_2 = c_3*c_4_t
+        axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_2 - c_2_t*w_1_t
+        axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_2 + s_2*w_1_t
+        # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
+        c_1_t = sin(q_1)
+        # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
+        s_1 = cos(q_1)
+        # (rrrrrr-V13) force part of reciprocal wrench 1
+        axis_z_rrrrrr_axes5_r7_x = -axis_z_rrrrrr_axes5_r5_x*s_1 - c_1_t*s_4
+        axis_z_rrrrrr_axes5_r7_y = s_1*s_4 - axis_z_rrrrrr_axes5_r5_x*c_1_t
+        axis_z_rrrrrr_axes5_in_base_x = (
+        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx +
+            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy +
+            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
+        )
+        axis_z_rrrrrr_axes5_in_base_y = (
+        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx +
+            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy +
+            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
+        )
+        axis_z_rrrrrr_axes5_in_base_z = (
+        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx +
+            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy +
+            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
+        )
+        w_1_t_3 = s_4*s_5
+        axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_3
+        axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_3 - c_5_t*s_3
+        axis_y_rrrrrr_axes5_r5_x = -axis_y_rrrrrr_axes5_r4_x*c_2_t - axis_y_rrrrrr_axes5_r4_y*s_2
+        axis_y_rrrrrr_axes5_r5_y = axis_y_rrrrrr_axes5_r4_x*s_2 - axis_y_rrrrrr_axes5_r4_y*c_2_t
+        axis_y_rrrrrr_axes5_r7_x = -axis_y_rrrrrr_axes5_r5_x*s_1 - c_1_t*v_2_t_2
+        axis_y_rrrrrr_axes5_r7_y = s_1*v_2_t_2 - axis_y_rrrrrr_axes5_r5_x*c_1_t
+        axis_y_rrrrrr_axes5_in_base_x = (
+        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx +
+            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy +
+            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
+        )
+        axis_y_rrrrrr_axes5_in_base_y = (
+        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx +
+            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy +
+            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
+        )
+        axis_y_rrrrrr_axes5_in_base_z = (
+        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx +
+            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy +
+            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
+        )
+        axis_x_rrrrrr_axes5_x = (
+        axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_z -
+            axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_y
+        )
+        axis_x_rrrrrr_axes5_y = (
+        axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_x -
+            axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_z
+        )
+        axis_x_rrrrrr_axes5_z = (
+        axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_y -
+            axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_x
+        )
+        # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
+        end_p1_r0_x = (
+        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xy +
+            R_yx*rrrrrr_base_frame_yy + R_zx*rrrrrr_base_frame_zy) +
+            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xy +
+            R_yy*rrrrrr_base_frame_yy + R_zy*rrrrrr_base_frame_zy) +
+            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xy +
+            R_yz*rrrrrr_base_frame_yy + R_zz*rrrrrr_base_frame_zy)
+        )
+        end_p1_r0_y = (
+        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xz +
+            R_yx*rrrrrr_base_frame_yz + R_zx*rrrrrr_base_frame_zz) +
+            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xz +
+            R_yy*rrrrrr_base_frame_yz + R_zy*rrrrrr_base_frame_zz) +
+            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xz +
+            R_yz*rrrrrr_base_frame_yz + R_zz*rrrrrr_base_frame_zz)
+        )
+        end_p1_r0_z = (
+        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xx +
+            R_yx*rrrrrr_base_frame_yx + R_zx*rrrrrr_base_frame_zx) +
+            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xx +
+            R_yy*rrrrrr_base_frame_yx + R_zy*rrrrrr_base_frame_zx) +
+            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xx +
+            R_yz*rrrrrr_base_frame_yx + R_zz*rrrrrr_base_frame_zx)
+        )
+        end_p1_r1_x = end_p1_r0_y*s_1 - c_1_t*end_p1_r0_x
+        end_p1_r1_y = -c_1_t*end_p1_r0_y - end_p1_r0_x*s_1
+        end_p1_r3_x = end_p1_r0_z*s_2 - c_2_t*end_p1_r1_y
+        end_p1_r3_y = -c_2_t*end_p1_r0_z - end_p1_r1_y*s_2
+        end_p1_r4_x = c_3*end_p1_r3_x + end_p1_r3_y*s_3
+        end_p1_r4_y = c_3*end_p1_r3_y - end_p1_r3_x*s_3
+        end_p1_r6_x = end_p1_r1_x*s_4 - c_4_t*end_p1_r4_y
+        end_p1_r6_y = -c_4_t*end_p1_r1_x - end_p1_r4_y*s_4
+        end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
+        end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
+        # (rrrrrr-V13) force part of reciprocal wrench 1
+        w_1_t_4 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
+        w_1_t_5 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
+        w_1_t_6 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
+        w_1_t_7 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
+        w_1_t_8 = size*w_1_t_4
+        w_1_t_9 = size*w_1_t_6
+        w_1_t_10 = size*w_1_t_5
+        w_1_t_11 = size*w_1_t_7
+        w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
+        w_1_t_13 = c_5_t*end_p1_r6_x*size
+        w_1_t_14 = end_p1_r8_y*size
+        w_1_t_15 = sqrt(size_t + w_1_t_14*w_1_t_14)
+        inv_w_1_t_69 = 1.0/w_1_t_15
+        w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
+        w_1_t_17 = inv_w_1_t_69*w_1_t_14
+        w_1_t_18 = w_1_t_13*w_1_t_17
+        w_1_t_19 = w_1_t_16*w_1_t_18
+        w_1_t_20 = w_1_t_13 - w_1_t_17*w_1_t_18
+        w_1_t_21 = v_1_y*w_1_t_16 - w_1_t_17*w_1_t_9
+        w_1_t_22 = v_1_y - w_1_t_16*w_1_t_21
+        w_1_t_23 = w_1_t_9 + w_1_t_17*w_1_t_21
+        w_1_t_24 = w_1_t_11*w_1_t_17
+        w_1_t_25 = v_2_y*w_1_t_16 - w_1_t_24
+        w_1_t_26 = v_2_y - w_1_t_16*w_1_t_25
+        w_1_t_27 = w_1_t_11 + w_1_t_17*w_1_t_25
+        w_1_t_28 = w_1_t_24 - v_3_y*w_1_t_16
+        w_1_t_29 = v_3_y + w_1_t_16*w_1_t_28
+        w_1_t_30 = w_1_t_11 - w_1_t_17*w_1_t_28
+        w_1_t_31 = sqrt(v_4_z*v_4_z + w_1_t_12*w_1_t_12 + w_1_t_19*w_1_t_19 + w_1_t_20*w_1_t_20)
+        inv_w_1_t_101 = 1.0/w_1_t_31
+        w_1_t_32 = inv_w_1_t_101*w_1_t_19
+        w_1_t_33 = inv_w_1_t_101*v_4_z
+        w_1_t_34 = inv_w_1_t_101*w_1_t_12
+        w_1_t_35 = inv_w_1_t_101*w_1_t_20
+        w_1_t_36 = w_1_t_22*w_1_t_32 + w_1_t_23*w_1_t_35 + w_1_t_34*w_1_t_8 - v_1_z*w_1_t_33
+        w_1_t_37 = w_1_t_32*w_1_t_36 - w_1_t_22
+        w_1_t_38 = v_1_z + w_1_t_33*w_1_t_36
+        w_1_t_39 = w_1_t_34*w_1_t_36 - w_1_t_8
+        w_1_t_40 = w_1_t_35*w_1_t_36 - w_1_t_23
+        w_1_t_41 = w_1_t_10*w_1_t_34
+        w_1_t_42 = w_1_t_41 + w_1_t_26*w_1_t_32 + w_1_t_27*w_1_t_35 - v_2_z*w_1_t_33
+        w_1_t_43 = w_1_t_32*w_1_t_42 - w_1_t_26
+        w_1_t_44 = v_2_z + w_1_t_33*w_1_t_42
+        w_1_t_45 = w_1_t_34*w_1_t_42 - w_1_t_10
+        w_1_t_46 = w_1_t_35*w_1_t_42 - w_1_t_27
+        w_1_t_47 = w_1_t_41 + w_1_t_29*w_1_t_32 + w_1_t_30*w_1_t_35 - v_3_z*w_1_t_33
+        w_1_t_48 = w_1_t_32*w_1_t_47 - w_1_t_29
+        w_1_t_49 = v_3_z + w_1_t_33*w_1_t_47
+        w_1_t_50 = w_1_t_34*w_1_t_47 - w_1_t_10
+        w_1_t_51 = w_1_t_35*w_1_t_47 - w_1_t_30
+        w_1_t_52 = (
+        sqrt(v_1_x*v_1_x + w_1_t_37*w_1_t_37 + w_1_t_38*w_1_t_38 + w_1_t_39*w_1_t_39 +
+            w_1_t_40*w_1_t_40)
+        )
+        inv_w_1_t_150 = 1.0/w_1_t_52
+        w_1_t_53 = inv_w_1_t_150*v_1_x
+        w_1_t_54 = inv_w_1_t_150*w_1_t_37
+        w_1_t_55 = inv_w_1_t_150*w_1_t_38
+        w_1_t_56 = inv_w_1_t_150*w_1_t_39
+        w_1_t_57 = inv_w_1_t_150*w_1_t_40
+        w_1_t_58 = (
+        v_2_x*w_1_t_53 + w_1_t_43*w_1_t_54 + w_1_t_44*w_1_t_55 + w_1_t_45*w_1_t_56 +
+            w_1_t_46*w_1_t_57
+        )
+        w_1_t_59 = v_2_x - w_1_t_53*w_1_t_58
+        w_1_t_60 = w_1_t_43 - w_1_t_54*w_1_t_58
+        w_1_t_61 = w_1_t_44 - w_1_t_55*w_1_t_58
+        w_1_t_62 = w_1_t_45 - w_1_t_56*w_1_t_58
+        w_1_t_63 = w_1_t_46 - w_1_t_57*w_1_t_58
+        w_1_t_64 = (
+        v_3_x*w_1_t_53 + w_1_t_48*w_1_t_54 + w_1_t_49*w_1_t_55 + w_1_t_50*w_1_t_56 +
+            w_1_t_51*w_1_t_57
+        )
+        w_1_t_65 = v_3_x - w_1_t_53*w_1_t_64
+        w_1_t_66 = w_1_t_48 - w_1_t_54*w_1_t_64
+        w_1_t_67 = w_1_t_49 - w_1_t_55*w_1_t_64
+        w_1_t_68 = w_1_t_50 - w_1_t_56*w_1_t_64
+        w_1_t_69 = w_1_t_51 - w_1_t_57*w_1_t_64
+        w_1_t_70 = (
+        sqrt(w_1_t_59*w_1_t_59 + w_1_t_60*w_1_t_60 + w_1_t_61*w_1_t_61 + w_1_t_62*w_1_t_62 +
+            w_1_t_63*w_1_t_63)
+        )
+        inv_w_1_t_194 = 1.0/w_1_t_70
+        w_1_t_71 = inv_w_1_t_194*w_1_t_59
+        w_1_t_72 = inv_w_1_t_194*w_1_t_60
+        w_1_t_73 = inv_w_1_t_194*w_1_t_61
+        w_1_t_74 = inv_w_1_t_194*w_1_t_62
+        w_1_t_75 = inv_w_1_t_194*w_1_t_63
+        w_1_t_76 = (
+        w_1_t_65*w_1_t_71 + w_1_t_66*w_1_t_72 + w_1_t_67*w_1_t_73 + w_1_t_68*w_1_t_74 +
+            w_1_t_69*w_1_t_75
+        )
+        w_1_t_77 = w_1_t_65 - w_1_t_71*w_1_t_76
+        w_1_t_78 = w_1_t_66 - w_1_t_72*w_1_t_76
+        w_1_t_79 = w_1_t_67 - w_1_t_73*w_1_t_76
+        w_1_t_80 = w_1_t_68 - w_1_t_74*w_1_t_76
+        w_1_t_81 = w_1_t_69 - w_1_t_75*w_1_t_76
+        w_1_t_82 = (
+        sqrt(w_1_t_77*w_1_t_77 + w_1_t_78*w_1_t_78 + w_1_t_79*w_1_t_79 + w_1_t_80*w_1_t_80 +
+            w_1_t_81*w_1_t_81)
+        )
+        inv_w_1_t_222 = 1.0/w_1_t_82
+        w_1_t_83 = inv_w_1_t_222*w_1_t_77
+        w_1_t_84 = inv_w_1_t_222*w_1_t_78
+        w_1_t_85 = inv_w_1_t_222*w_1_t_79
+        w_1_t_86 = inv_w_1_t_222*w_1_t_80
+        w_1_t_87 = inv_w_1_t_222*w_1_t_81
+        # (rrrrrr-V16) force part of reciprocal wrench 2
+        w_2_t = inv_w_1_t_194*inv_w_1_t_222*w_1_t_76
+        w_2_t_2 = inv_w_1_t_194*w_1_t_71 - w_1_t_83*w_2_t
+        w_2_t_3 = inv_w_1_t_194*w_1_t_72 - w_1_t_84*w_2_t
+        w_2_t_4 = w_1_t_85*w_2_t - inv_w_1_t_194*w_1_t_73
+        w_2_t_5 = size*(inv_w_1_t_194*w_1_t_74 - w_1_t_86*w_2_t)
+        w_2_t_6 = size*(inv_w_1_t_194*w_1_t_75 - w_1_t_87*w_2_t)
+        # (rrrrrr-V29) moment part of reciprocal wrench 2
+        o_2_t = end_p1_r8_y*w_2_t_5
+        o_2_t_2 = end_p1_r8_y*w_2_t_6
+        o_2_y = end_p1_r8_x*w_2_t_5 - end_p1_r6_x*w_2_t_6
+        # (M2) coupling block of M
+        q_in_base_x = (
+        R_xx*rrrrrr_platform_point_x + R_xy*rrrrrr_platform_point_y + R_xz*rrrrrr_platform_point_z
+        )
+        q_in_base_y = (
+        R_yx*rrrrrr_platform_point_x + R_yy*rrrrrr_platform_point_y + R_yz*rrrrrr_platform_point_z
+        )
+        q_in_base_z = (
+        R_zx*rrrrrr_platform_point_x + R_zy*rrrrrr_platform_point_y + R_zz*rrrrrr_platform_point_z
+        )
+        # (rrrrrr-V1) velocity of the connection point
+        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
+        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
+        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
+        S_dot_x = S_dot_t + t_dot_x
+        S_dot_y = S_dot_t_2 + t_dot_y
+        S_dot_z = S_dot_t_3 + t_dot_z
+        S_dot_tip_x = (
+        S_dot_x*axis_x_rrrrrr_axes5_x + S_dot_y*axis_x_rrrrrr_axes5_y +
+            S_dot_z*axis_x_rrrrrr_axes5_z
+        )
+        S_dot_tip_y = (
+        S_dot_x*axis_y_rrrrrr_axes5_in_base_x + S_dot_y*axis_y_rrrrrr_axes5_in_base_y +
+            S_dot_z*axis_y_rrrrrr_axes5_in_base_z
+        )
+        S_dot_tip_z = (
+        S_dot_x*axis_z_rrrrrr_axes5_in_base_x + S_dot_y*axis_z_rrrrrr_axes5_in_base_y +
+            S_dot_z*axis_z_rrrrrr_axes5_in_base_z
+        )
+        # (rrrrrr-A14) rate of moment direction 1
+        omega_tip_x = (
+        axis_x_rrrrrr_axes5_x*omega_x + axis_x_rrrrrr_axes5_y*omega_y +
+            axis_x_rrrrrr_axes5_z*omega_z
+        )
+        omega_tip_y = (
+        axis_y_rrrrrr_axes5_in_base_x*omega_x + axis_y_rrrrrr_axes5_in_base_y*omega_y +
+            axis_y_rrrrrr_axes5_in_base_z*omega_z
+        )
+        omega_tip_z = (
+        axis_z_rrrrrr_axes5_in_base_x*omega_x + axis_z_rrrrrr_axes5_in_base_y*omega_y +
+            axis_z_rrrrrr_axes5_in_base_z*omega_z
+        )
+        nd_m1_t = end_p1_r6_x*omega_tip_y - end_p1_r8_y*omega_tip_z
+        nd_m1_t_2 = end_p1_r8_x*omega_tip_z - end_p1_r6_x*omega_tip_x
+        nd_m1_t_3 = end_p1_r8_y*omega_tip_x - end_p1_r8_x*omega_tip_y
+        # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
+        bias_t = rrrrrr_joint2_offset_x*s_2
+        bias_t_2 = c_2_t*rrrrrr_joint2_offset_x
+        d_2_r2_x = bias_t*c_3 - bias_t_2*s_3
+        d_2_r2_y = -bias_t*s_3 - bias_t_2*c_3
+        bias_t_3 = c_4_t*d_2_r2_y
+        bias_t_4 = d_2_r2_y*s_4
+        d_2_r6_x = bias_t_4*c_5_t + d_2_r2_x*s_5
+        d_2_r6_y = bias_t_4*s_5 - c_5_t*d_2_r2_x
+        bias_t_5 = c_3*rrrrrr_joint3_offset_x
+        bias_t_6 = rrrrrr_joint3_offset_x*s_3
+        bias_t_7 = bias_t_6*c_4_t
+        bias_t_8 = bias_t_6*s_4
+        d_3_r4_x = bias_t_5*s_5 - bias_t_8*c_5_t
+        d_3_r4_y = -bias_t_5*c_5_t - bias_t_8*s_5
+        bias_t_9 = rrrrrr_joint4_offset_x*s_5
+        bias_t_10 = c_5_t*rrrrrr_joint4_offset_x
+        bias_t_11 = rrrrrr_joint5_offset_x*s_5
+        bias_t_12 = c_5_t*rrrrrr_joint5_offset_x
+        # (rrrrrr-N16) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
+        g_r1_x = g_r0_y*s_1 - c_1_t*g_r0_x
+        g_r1_y = -c_1_t*g_r0_y - g_r0_x*s_1
+        g_r3_x = g_r0_z*s_2 - c_2_t*g_r1_y
+        g_r3_y = -c_2_t*g_r0_z - g_r1_y*s_2
+        g_r4_x = c_3*g_r3_x + g_r3_y*s_3
+        g_r4_y = c_3*g_r3_y - g_r3_x*s_3
+        # (rrrrrr-V16) force part of reciprocal wrench 2
+        w_2_in_base_x = (
+        axis_x_rrrrrr_axes5_x*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_x*w_2_t_3 -
+            axis_z_rrrrrr_axes5_in_base_x*w_2_t_4
+        )
+        w_2_in_base_y = (
+        axis_x_rrrrrr_axes5_y*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_y*w_2_t_3 -
+            axis_z_rrrrrr_axes5_in_base_y*w_2_t_4
+        )
+        w_2_in_base_z = (
+        axis_x_rrrrrr_axes5_z*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_z*w_2_t_3 -
+            axis_z_rrrrrr_axes5_in_base_z*w_2_t_4
+        )
+        # (rrrrrr-V35) rate of joint 1
+        qd_1_t = nd_m1_t_3*size
+        qd_1_t_2 = nd_m1_t*size
+        qd_1_t_3 = (
+        inv_w_1_t_222*(S_dot_tip_y*w_1_t_84 + qd_1_t*w_1_t_86 + qd_1_t_2*w_1_t_87 -
+            S_dot_tip_x*w_1_t_83 - S_dot_tip_z*w_1_t_85)
+        )
+        qd_1_t_4 = (
+        inv_w_1_t_194*(S_dot_tip_y*w_1_t_72 + qd_1_t*w_1_t_74 + qd_1_t_2*w_1_t_75 -
+            S_dot_tip_x*w_1_t_71 - S_dot_tip_z*w_1_t_73 - qd_1_t_3*w_1_t_76)
+        )
+        qd_1_t_5 = (
+        inv_w_1_t_150*(S_dot_tip_x*w_1_t_53 + S_dot_tip_z*w_1_t_55 + qd_1_t_3*w_1_t_64 +
+            qd_1_t_4*w_1_t_58 - S_dot_tip_y*w_1_t_54 - qd_1_t*w_1_t_56 - qd_1_t_2*w_1_t_57)
+        )
+        qd_1_t_6 = (
+        inv_w_1_t_101*(S_dot_tip_y*w_1_t_32 + qd_1_t*w_1_t_34 + qd_1_t_2*w_1_t_35 +
+            qd_1_t_3*w_1_t_47 + qd_1_t_4*w_1_t_42 - S_dot_tip_z*w_1_t_33 - qd_1_t_5*w_1_t_36)
+        )
+        qd_1_t_7 = (
+        inv_w_1_t_69*(S_dot_tip_y*w_1_t_16 + qd_1_t_4*w_1_t_25 + qd_1_t_6*w_1_t_18 -
+            qd_1_t_2*w_1_t_17 - qd_1_t_3*w_1_t_28 - qd_1_t_5*w_1_t_21)
+        )
+        # (rrrrrr-V40) angular velocity of link 1
+        omega_1_t = qd_1_t_5*s_2
+        omega_1_t_2 = c_2_t*qd_1_t_5
+        # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
+        zeta_2_x = omega_1_t_2*qd_1_t_4
+        zeta_2_y = omega_1_t*qd_1_t_4
+        # (rrrrrr-V42) angular velocity of link 2
+        omega_2_r0_x = c_3*omega_1_t - omega_1_t_2*s_3
+        omega_2_r0_y = -c_3*omega_1_t_2 - omega_1_t*s_3
+        # (rrrrrr-A5) angular acceleration of link 3 from the turning of axis 3
+        zeta_3_x = omega_2_r0_y*qd_1_t_3
+        zeta_3_y = omega_2_r0_x*qd_1_t_3
+        # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
+        zeta_2_r0_x = c_3*zeta_2_x + s_3*zeta_2_y
+        zeta_2_r0_y = c_3*zeta_2_y - s_3*zeta_2_x
+        # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
+        beta_3_x = zeta_2_r0_x - zeta_3_x
+        beta_3_y = zeta_2_r0_y + zeta_3_y
+        # (rrrrrr-V44) angular velocity of link 3
+        omega_3_z = -qd_1_t_3 - qd_1_t_4
+        omega_3_r1_x = omega_3_z*s_4 - c_4_t*omega_2_r0_y
+        omega_3_r1_y = -c_4_t*omega_3_z - omega_2_r0_y*s_4
+        # (rrrrrr-A7) angular acceleration of link 4 from the turning of axis 4
+        zeta_4_x = omega_3_r1_y*qd_1_t_6
+        zeta_4_y = omega_3_r1_x*qd_1_t_6
+        # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
+        beta_3_t = beta_3_y*c_4_t
+        beta_3_t_2 = beta_3_y*s_4
+        # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
+        beta_4_x = -beta_3_t - zeta_4_x
+        beta_4_y = zeta_4_y - beta_3_t_2
+        # (rrrrrr-V46) angular velocity of link 4
+        omega_4_z = omega_2_r0_x - qd_1_t_6
+        omega_4_t = c_5_t*omega_3_r1_y
+        omega_4_r1_x = omega_4_z*s_5 - omega_4_t
+        omega_4_t_2 = omega_3_r1_y*s_5
+        omega_4_r1_y = -omega_4_t_2 - c_5_t*omega_4_z
+        # (rrrrrr-A9) angular acceleration of link 5 from the turning of axis 5
+        zeta_5_x = omega_4_r1_y*qd_1_t_7
+        zeta_5_y = omega_4_r1_x*qd_1_t_7
+        # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
+        beta_4_t = beta_3_x*s_5
+        beta_4_r1_x = beta_4_t - beta_4_y*c_5_t
+        beta_4_t_2 = beta_3_x*c_5_t
+        beta_4_r1_y = -beta_4_t_2 - beta_4_y*s_5
+        # (rrrrrr-A10) angular acceleration of link 5 at zero joint accelerations
+        beta_5_x = beta_4_r1_x + zeta_5_x
+        beta_5_y = beta_4_r1_y - zeta_5_y
+        # (rrrrrr-V48) angular velocity of link 5
+        omega_5_z = omega_3_r1_x + qd_1_t_7
+        # (rrrrrr-A14) rate of moment direction 1
+        nd_m1_t_4 = end_p1_r8_y*omega_4_r1_y
+        nd_m1_x = -nd_m1_t_2 - end_p1_r6_x*omega_4_r1_x
+        nd_m1_y = nd_m1_t - end_p1_r6_x*omega_4_r1_y
+        # (rrrrrr-A15) bias of the angular acceleration along moment direction 1
+        nu_1_t = beta_5_x*end_p1_r8_y - beta_5_y*end_p1_r8_x
+        nu_1_t_2 = omega_4_r1_x - omega_tip_x
+        nu_1_t_3 = omega_4_r1_y - omega_tip_y
+        nu_1_t_4 = omega_5_z - omega_tip_z
+        nu_1_t_5 = (
+        nd_m1_x*nu_1_t_2 + nd_m1_y*nu_1_t_3 + nu_1_t_4*(nd_m1_t_4 + end_p1_r8_x*omega_4_r1_x)
+        )
+        nu_1 = nu_1_t - nu_1_t_5
+        # (rrrrrr-A18) acceleration with which the joints turn along moment direction 1
+        alpha_tip_y = (
+        alpha_x*axis_y_rrrrrr_axes5_in_base_x + alpha_y*axis_y_rrrrrr_axes5_in_base_y +
+            alpha_z*axis_y_rrrrrr_axes5_in_base_z
+        )
+        etad_1_t = (
+        end_p1_r8_y*(alpha_x*axis_x_rrrrrr_axes5_x + alpha_y*axis_x_rrrrrr_axes5_y +
+            alpha_z*axis_x_rrrrrr_axes5_z) - alpha_tip_y*end_p1_r8_x
+        )
+        etad_1 = nu_1 - etad_1_t
+        # (rrrrrr-A16) rate of moment direction 2
+        nd_m2_y = -nd_m1_t_3 - end_p1_r8_x*omega_4_r1_y
+        nd_m2_z = nd_m1_t_2 - end_p1_r8_x*omega_5_z
+        # (rrrrrr-A17) bias of the angular acceleration along moment direction 2
+        nu_2_t = beta_5_y*end_p1_r6_x - beta_4_x*end_p1_r8_y
+        nu_2_t_2 = (
+        nd_m2_y*nu_1_t_3 + nd_m2_z*nu_1_t_4 + nu_1_t_2*(nd_m1_t_4 + end_p1_r6_x*omega_5_z)
+        )
+        nu_2 = nu_2_t - nu_2_t_2
+        # (rrrrrr-A19) acceleration with which the joints turn along moment direction 2
+        etad_2_t = (
+        alpha_tip_y*end_p1_r6_x - end_p1_r8_y*(alpha_x*axis_z_rrrrrr_axes5_in_base_x +
+            alpha_y*axis_z_rrrrrr_axes5_in_base_y + alpha_z*axis_z_rrrrrr_axes5_in_base_z)
+        )
+        etad_2 = nu_2 - etad_2_t
+        # (rrrrrr-A2) acceleration of the connection point without its centripetal part
+        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
+        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
+        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
+        # (rrrrrr-A3) acceleration of the connection point
+        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
+        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
+        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
+        # (rrrrrr-V43) centripetal tensor of link 2
+        W_2_t = omega_1_t*omega_1_t
+        W_2_t_2 = omega_1_t_2*omega_1_t_2
+        W_2_t_3 = qd_1_t_4*qd_1_t_4
+        W_2_xy = omega_1_t*omega_1_t_2
+        # (rrrrrr-V45) centripetal tensor of link 3
+        W_3_t = omega_2_r0_x*omega_2_r0_x
+        W_3_t_2 = omega_2_r0_y*omega_2_r0_y
+        W_3_t_3 = omega_3_z*omega_3_z
+        W_3_xx = W_3_t_2 + W_3_t_3
+        W_3_xy = omega_2_r0_x*omega_2_r0_y
+        W_3_xz = omega_2_r0_x*omega_3_z
+        W_3_yz = omega_2_r0_y*omega_3_z
+        # (rrrrrr-V47) centripetal tensor of link 4
+        W_4_t = omega_3_r1_x*omega_3_r1_x
+        W_4_t_2 = omega_3_r1_y*omega_3_r1_y
+        W_4_t_3 = omega_4_z*omega_4_z
+        W_4_xy = omega_3_r1_x*omega_3_r1_y
+        W_4_xz = omega_3_r1_x*omega_4_z
+        W_4_yz = omega_3_r1_y*omega_4_z
+        # (rrrrrr-V49) centripetal tensor of link 5
+        W_5_t = omega_4_r1_x*omega_4_r1_x
+        W_5_t_2 = omega_4_r1_y*omega_4_r1_y
+        W_5_t_3 = omega_5_z*omega_5_z
+        W_5_xx = W_5_t_2 + W_5_t_3
+        W_5_xy = omega_4_r1_x*omega_4_r1_y
+        W_5_xz = omega_4_r1_x*omega_5_z
+        W_5_yz = omega_4_r1_y*omega_5_z
+        # (rrrrrr-V40) angular velocity of link 1
+        omega_1_x = e_1_r6_x*qd_1_t_5
+        omega_1_y = e_1_r6_y*qd_1_t_5
+        omega_1_z = qd_1_t_5*v_1_t
+        # (rrrrrr-V41) centripetal tensor of link 1
+        W_1_t = omega_1_x*omega_1_x
+        W_1_t_2 = omega_1_y*omega_1_y
+        W_1_t_3 = omega_1_z*omega_1_z
+        W_1_xy = omega_1_x*omega_1_y
+        W_1_xz = omega_1_x*omega_1_z
+        W_1_yz = omega_1_y*omega_1_z
+        # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
+        zeta_2_t = c_4_t*zeta_2_r0_y
+        zeta_2_t_2 = s_4*zeta_2_r0_y
+        zeta_2_r4_x = c_5_t*zeta_2_t_2 + s_5*zeta_2_r0_x
+        zeta_2_r4_y = s_5*zeta_2_t_2 - c_5_t*zeta_2_r0_x
+        # (rrrrrr-V42) angular velocity of link 2
+        omega_2_x = omega_1_x - qd_1_t_4*v_2_t
+        omega_2_y = omega_1_y - qd_1_t_4*v_2_t_2
+        omega_2_z = -omega_1_z - qd_1_t_4*s_4
+        # (rrrrrr-V43) centripetal tensor of link 2
+        W_2_t_4 = omega_2_x*omega_2_x
+        W_2_t_5 = omega_2_y*omega_2_y
+        W_2_t_6 = omega_2_z*omega_2_z
+        W_2_xy_2 = omega_2_x*omega_2_y
+        W_2_xz = omega_2_x*omega_2_z
+        W_2_yz = omega_2_y*omega_2_z
+        # (rrrrrr-V44) angular velocity of link 3
+        omega_3_r3_x = omega_2_r0_x*s_5 - omega_4_t
+        omega_3_r3_y = -omega_4_t_2 - c_5_t*omega_2_r0_x
+        # (rrrrrr-V45) centripetal tensor of link 3
+        W_3_xy_2 = omega_3_r3_x*omega_3_r3_y
+        # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
+        bias_t_13 = W_5_xy + beta_4_x
+        bias_x = (
+        W_1_xy*d_2_r6_y + W_1_xz*bias_t_3 + bias_t_7*(W_2_xz + zeta_2_r4_y) + d_3_r4_y*(W_2_xy_2 +
+            zeta_2_t) - W_5_xx*rrrrrr_platform_joint_offset_x - bias_t_10*(W_3_xy_2 + beta_3_t) -
+            bias_t_11*(W_4_t + W_5_t_2) - bias_t_12*(W_5_xy - beta_4_x) - bias_t_9*(W_4_t +
+            omega_3_r3_y*omega_3_r3_y) - d_2_r6_x*(W_1_t_2 + W_1_t_3) - d_3_r4_x*(W_2_t_5 +
+            W_2_t_6)
+        )
+        bias_y = (
+        W_1_xy*d_2_r6_x + W_1_yz*bias_t_3 + bias_t_10*(W_4_t + omega_3_r3_x*omega_3_r3_x) +
+            bias_t_11*bias_t_13 + bias_t_12*(W_4_t + W_5_t) +
+            bias_t_13*rrrrrr_platform_joint_offset_x + bias_t_7*(W_2_yz - zeta_2_r4_x) +
+            bias_t_9*(W_3_xy_2 - beta_3_t) + d_3_r4_x*(W_2_xy_2 - zeta_2_t) - d_2_r6_y*(W_1_t +
+            W_1_t_3) - d_3_r4_y*(W_2_t_4 + W_2_t_6)
+        )
+        bias_z = (
+        bias_t_11*(omega_3_r1_x*omega_4_r1_x - beta_4_r1_y) + bias_t_3*(W_1_t + W_1_t_2) +
+            bias_t_9*(beta_4_t_2 + omega_3_r1_x*omega_3_r3_x - beta_3_t_2*s_5) + d_3_r4_x*(W_2_xz
+            - zeta_2_r4_y) + d_3_r4_y*(W_2_yz + zeta_2_r4_x) +
+            rrrrrr_platform_joint_offset_x*(W_5_xz - beta_5_y) - W_1_xz*d_2_r6_x - W_1_yz*d_2_r6_y
+            - bias_t_10*(beta_4_t + beta_3_t_2*c_5_t + omega_3_r1_x*omega_3_r3_y) -
+            bias_t_12*(beta_4_r1_x + omega_3_r1_x*omega_4_r1_y) - bias_t_7*(W_2_t_4 + W_2_t_5)
+        )
+        # (rrrrrr-A3) acceleration of the connection point
+        S_ddot_tip_x = (
+        S_ddot_x*axis_x_rrrrrr_axes5_x + S_ddot_y*axis_x_rrrrrr_axes5_y +
+            S_ddot_z*axis_x_rrrrrr_axes5_z
+        )
+        S_ddot_tip_y = (
+        S_ddot_x*axis_y_rrrrrr_axes5_in_base_x + S_ddot_y*axis_y_rrrrrr_axes5_in_base_y +
+            S_ddot_z*axis_y_rrrrrr_axes5_in_base_z
+        )
+        S_ddot_tip_z = (
+        S_ddot_x*axis_z_rrrrrr_axes5_in_base_x + S_ddot_y*axis_z_rrrrrr_axes5_in_base_y +
+            S_ddot_z*axis_z_rrrrrr_axes5_in_base_z
+        )
+        # (rrrrrr-A12) acceleration of the connection point left to the joint accelerations
+        rel_x = S_ddot_tip_x - bias_x
+        rel_y = S_ddot_tip_y - bias_y
+        rel_z = S_ddot_tip_z - bias_z
+        # (rrrrrr-A20) acceleration of joint 1
+        qdd_1_t = etad_1*size
+        qdd_1_t_2 = etad_2*size
+        qdd_1_t_3 = (
+        inv_w_1_t_222*(qdd_1_t*w_1_t_86 + qdd_1_t_2*w_1_t_87 + rel_x*w_1_t_83 + rel_z*w_1_t_85 -
+            rel_y*w_1_t_84)
+        )
+        qdd_1_t_4 = (
+        inv_w_1_t_194*(qdd_1_t*w_1_t_74 + qdd_1_t_2*w_1_t_75 + rel_x*w_1_t_71 + rel_z*w_1_t_73 -
+            qdd_1_t_3*w_1_t_76 - rel_y*w_1_t_72)
+        )
+        qdd_1_t_5 = (
+        inv_w_1_t_150*(qdd_1_t_3*w_1_t_64 + qdd_1_t_4*w_1_t_58 + rel_y*w_1_t_54 - qdd_1_t*w_1_t_56
+            - qdd_1_t_2*w_1_t_57 - rel_x*w_1_t_53 - rel_z*w_1_t_55)
+        )
+        qdd_1_t_6 = (
+        inv_w_1_t_101*(qdd_1_t*w_1_t_34 + qdd_1_t_2*w_1_t_35 + qdd_1_t_3*w_1_t_47 +
+            qdd_1_t_4*w_1_t_42 + rel_z*w_1_t_33 - qdd_1_t_5*w_1_t_36 - rel_y*w_1_t_32)
+        )
+        # (rrrrrr-N21) acceleration of the reference point of link 5, less gravity
+        acc_5_x = (
+        S_ddot_tip_x - axis_x_rrrrrr_axes5_x*gravity_x - axis_x_rrrrrr_axes5_y*gravity_y -
+            axis_x_rrrrrr_axes5_z*gravity_z
+        )
+        acc_5_y = (
+        S_ddot_tip_y - axis_y_rrrrrr_axes5_in_base_x*gravity_x -
+            axis_y_rrrrrr_axes5_in_base_y*gravity_y - axis_y_rrrrrr_axes5_in_base_z*gravity_z
+        )
+        acc_5_z = (
+        S_ddot_tip_z - axis_z_rrrrrr_axes5_in_base_x*gravity_x -
+            axis_z_rrrrrr_axes5_in_base_y*gravity_y - axis_z_rrrrrr_axes5_in_base_z*gravity_z
+        )
+        # (rrrrrr-A30) angular acceleration of link 1
+        alpha_1_t = qdd_1_t_5*s_2
+        alpha_1_t_2 = c_2_t*qdd_1_t_5
+        # (rrrrrr-A34) angular acceleration of link 2
+        alpha_2_x = zeta_2_x - alpha_1_t
+        alpha_2_y = alpha_1_t_2 + zeta_2_y
+        # (rrrrrr-A36) acceleration tensor of link 2
+        B_2_xy = -W_2_xy - qdd_1_t_4
+        B_2_yx = qdd_1_t_4 - W_2_xy
+        B_2_zx = -alpha_2_y - zeta_2_y
+        B_2_zy = alpha_2_x + zeta_2_x
+        # (rrrrrr-A54) acceleration of the origin of joint 3
+        a_o3_t = rrrrrr_joint3_offset_x*(W_2_t_2 + W_2_t_3)
+        a_o3_t_2 = B_2_yx*rrrrrr_joint3_offset_x
+        a_o3_t_3 = B_2_zx*rrrrrr_joint3_offset_x
+        # (rrrrrr-A38) angular acceleration of link 3
+        alpha_3_x = alpha_2_x*c_3 + alpha_2_y*s_3 - zeta_3_x
+        alpha_3_y = zeta_3_y + alpha_2_y*c_3 - alpha_2_x*s_3
+        alpha_3_z = qdd_1_t_3 + qdd_1_t_4
+        # (rrrrrr-A40) acceleration tensor of link 3
+        B_3_xy = W_3_xy - alpha_3_z
+        B_3_xz = W_3_xz + alpha_3_y
+        B_3_yx = W_3_xy + alpha_3_z
+        B_3_yz = W_3_yz - alpha_3_x
+        B_3_zx = W_3_xz - alpha_3_y
+        B_3_zy = W_3_yz + alpha_3_x
+        # (rrrrrr-A54) acceleration of the origin of joint 3
+        a_o3_r0_x = a_o3_t_2*s_3 - a_o3_t*c_3
+        a_o3_r0_y = a_o3_t*s_3 + a_o3_t_2*c_3
+        # (rrrrrr-A56) acceleration of the origin of joint 4
+        a_o4_x = a_o3_r0_x - W_3_xx*rrrrrr_joint4_offset_x
+        a_o4_y = a_o3_r0_y + B_3_yx*rrrrrr_joint4_offset_x
+        a_o4_z = a_o3_t_3 + B_3_zx*rrrrrr_joint4_offset_x
+        # (rrrrrr-N15) acceleration of the reference point of link 4, less gravity
+        acc_4_x = a_o4_z*s_4 + c_4_t*g_r4_y - a_o4_y*c_4_t - g_r1_x*s_4
+        acc_4_y = c_4_t*g_r1_x + g_r4_y*s_4 - a_o4_y*s_4 - a_o4_z*c_4_t
+        acc_4_z = a_o4_x - g_r4_x
+        # (rrrrrr-A42) angular acceleration of link 4
+        alpha_4_x = alpha_3_z*s_4 - zeta_4_x - alpha_3_y*c_4_t
+        alpha_4_y = zeta_4_y - alpha_3_y*s_4 - alpha_3_z*c_4_t
+        alpha_4_z = alpha_3_x + qdd_1_t_6
+        # (rrrrrr-A44) acceleration tensor of link 4
+        B_4_xy = W_4_xy - alpha_4_z
+        B_4_xz = W_4_xz + alpha_4_y
+        B_4_yx = W_4_xy + alpha_4_z
+        B_4_yz = W_4_yz - alpha_4_x
+        B_4_zx = W_4_xz - alpha_4_y
+        B_4_zy = W_4_yz + alpha_4_x
+        # (rrrrrr-N72) inertia moment of the links that turn with link 4, about their reference points
+        mu_4_x = (
+        B_4_yx*J_4_xz + B_4_zx*J_4_yz + B_4_zy*Sigma_4_yy - B_4_yz*Sigma_4_zz - J_4_xy*(W_4_t_2 -
+            W_4_t_3) - acc_4_y*h_4_x - acc_4_z*h_4_y
+        )
+        mu_4_y = (
+        B_4_xy*J_4_xy + B_4_xz*Sigma_4_zz + acc_4_x*h_4_x - B_4_zx*Sigma_4_xx - B_4_zy*J_4_yz -
+            J_4_xz*(W_4_t - W_4_t_3) - acc_4_z*h_4_z
+        )
+        mu_4_z = (
+        B_4_yx*Sigma_4_xx + acc_4_x*h_4_y + acc_4_y*h_4_z - B_4_xy*Sigma_4_yy - B_4_xz*J_4_xy -
+            B_4_yz*J_4_xz - J_4_yz*(W_4_t - W_4_t_2)
+        )
+        # (rrrrrr-A46) angular acceleration of link 5
+        alpha_5_x = zeta_5_x + alpha_4_z*s_5 - alpha_4_y*c_5_t
+        alpha_5_y = -zeta_5_y - alpha_4_y*s_5 - alpha_4_z*c_5_t
+        alpha_5_z = (
+        alpha_4_x + inv_w_1_t_69*(qdd_1_t_2*w_1_t_17 + qdd_1_t_3*w_1_t_28 + qdd_1_t_5*w_1_t_21 +
+            rel_y*w_1_t_16 - qdd_1_t_4*w_1_t_25 - qdd_1_t_6*w_1_t_18)
+        )
+        # (rrrrrr-A50) acceleration tensor of link 5
+        B_5_xy = W_5_xy - alpha_5_z
+        B_5_xz = W_5_xz + alpha_5_y
+        B_5_yx = W_5_xy + alpha_5_z
+        B_5_yz = W_5_yz - alpha_5_x
+        B_5_zx = W_5_xz - alpha_5_y
+        B_5_zy = W_5_yz + alpha_5_x
+        # (rrrrrr-N64) inertia moment of the links that turn with link 5, about their reference points
+        mu_5_x = (
+        B_5_yx*J_5_xz + B_5_zy*Sigma_5_yy + J_5_yz*(W_5_t_2 - W_5_t_3) + acc_5_z*h_5_y -
+            B_5_yz*Sigma_5_zz - B_5_zx*J_5_xy - acc_5_y*h_5_z
+        )
+        mu_5_y = (
+        B_5_xz*Sigma_5_zz + B_5_zy*J_5_xy + acc_5_x*h_5_z - B_5_xy*J_5_yz - B_5_zx*Sigma_5_xx -
+            J_5_xz*(W_5_t - W_5_t_3) - acc_5_z*h_5_x
+        )
+        mu_5_z = (
+        B_5_xz*J_5_yz + B_5_yx*Sigma_5_xx + J_5_xy*(W_5_t - W_5_t_2) + acc_5_y*h_5_x -
+            B_5_xy*Sigma_5_yy - B_5_yz*J_5_xz - acc_5_x*h_5_y
+        )
+        # (rrrrrr-N74) moment about joint 4 of the links from 4 outwards, the force at the connection point left out
+        N_4_x = mu_4_x + mu_5_z
+        N_4_y = mu_4_y - c_5_t*mu_5_x - mu_5_y*s_5
+        N_4_z = mu_4_z + mu_5_x*s_5 - c_5_t*mu_5_y
+        # (rrrrrr-N19) inertia force of link 4 less its weight
+        f_4_x = (
+        B_4_xz*h_4_x + acc_4_x*rrrrrr_link4_mass - B_4_xy*h_4_y - h_4_z*(W_4_t_2 + W_4_t_3)
+        )
+        f_4_y = B_4_yx*h_4_z + B_4_yz*h_4_x + acc_4_y*rrrrrr_link4_mass + h_4_y*(W_4_t + W_4_t_3)
+        f_4_z = B_4_zx*h_4_z + acc_4_z*rrrrrr_link4_mass - B_4_zy*h_4_y - h_4_x*(W_4_t + W_4_t_2)
+        # (rrrrrr-N9) acceleration of the reference point of link 3, less gravity
+        acc_3_x = a_o3_r0_x - g_r4_x
+        acc_3_y = a_o3_r0_y - g_r4_y
+        acc_3_z = a_o3_t_3 - g_r1_x
+        # (rrrrrr-N82) inertia moment of the links that turn with link 3, about their reference points
+        mu_3_x = (
+        B_3_yx*J_3_xz + B_3_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) + acc_3_z*h_3_y -
+            B_3_yz*Sigma_3_zz - B_3_zx*J_3_xy - acc_3_y*h_3_z
+        )
+        mu_3_y = (
+        B_3_xz*Sigma_3_zz + B_3_zy*J_3_xy + acc_3_x*h_3_z - B_3_xy*J_3_yz - B_3_zx*Sigma_3_xx -
+            J_3_xz*(W_3_t - W_3_t_3) - acc_3_z*h_3_x
+        )
+        mu_3_z = (
+        B_3_xz*J_3_yz + B_3_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + acc_3_y*h_3_x -
+            B_3_xy*Sigma_3_yy - B_3_yz*J_3_xz - acc_3_x*h_3_y
+        )
+        # (rrrrrr-N19) inertia force of link 4 less its weight
+        f_4_r0_x = -c_4_t*f_4_x - f_4_y*s_4
+        f_4_r0_y = f_4_x*s_4 - c_4_t*f_4_y
+        # (rrrrrr-N84) moment about joint 3 of the links from 3 outwards, the force at the connection point left out
+        N_3_x = N_4_z + mu_3_x
+        N_3_y = mu_3_y - N_4_x*c_4_t - N_4_y*s_4 - f_4_r0_y*rrrrrr_joint4_offset_x
+        N_3_z = mu_3_z + N_4_x*s_4 + f_4_r0_x*rrrrrr_joint4_offset_x - N_4_y*c_4_t
+        # (rrrrrr-N13) inertia force of link 3 less its weight
+        f_3_x = B_3_xy*h_3_y + B_3_xz*h_3_z + acc_3_x*rrrrrr_link3_mass - W_3_xx*h_3_x
+        f_3_y = B_3_yx*h_3_x + B_3_yz*h_3_z + acc_3_y*rrrrrr_link3_mass - h_3_y*(W_3_t + W_3_t_3)
+        f_3_z = B_3_zx*h_3_x + B_3_zy*h_3_y + acc_3_z*rrrrrr_link3_mass - h_3_z*(W_3_t + W_3_t_2)
+        # (rrrrrr-N86) inertia force of the links from 3 outwards, the last link left out
+        T_3_x = f_3_x + f_4_z
+        T_3_y = f_3_y + f_4_r0_x
+        T_3_z = f_3_z + f_4_r0_y
+        # (rrrrrr-N94) inertia moment of the links that turn with link 2, about their reference points
+        mu_2_x = (
+        B_2_yx*J_2_xz + B_2_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) + g_r3_y*h_2_z -
+            B_2_zx*J_2_xy - Sigma_2_zz*alpha_1_t - g_r1_x*h_2_y
+        )
+        mu_2_y = (
+        B_2_zy*J_2_xy + Sigma_2_zz*alpha_1_t_2 + g_r1_x*h_2_x - B_2_xy*J_2_yz - B_2_zx*Sigma_2_xx
+            - J_2_xz*(W_2_t - W_2_t_3) - g_r3_x*h_2_z
+        )
+        mu_2_z = (
+        B_2_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + J_2_yz*alpha_1_t_2 + g_r3_x*h_2_y -
+            B_2_xy*Sigma_2_yy - J_2_xz*alpha_1_t - g_r3_y*h_2_x
+        )
+        # (rrrrrr-N96) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        N_2_x = mu_2_x + N_3_x*c_3 - N_3_y*s_3
+        N_2_y = mu_2_y + N_3_x*s_3 + N_3_y*c_3 - T_3_z*rrrrrr_joint3_offset_x
+        N_2_z = N_3_z + mu_2_z + rrrrrr_joint3_offset_x*(T_3_x*s_3 + T_3_y*c_3)
+        # (rrrrrr-N106) inertia moment of the links that turn with link 1, about their reference points
+        mu_1_z = -J_1_xx*qdd_1_t_5 - g_r1_x*h_1_y - g_r1_y*h_1_z
+        # (rrrrrr-N108) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        N_1_z = mu_1_z + N_2_x*s_2 - N_2_y*c_2_t
+        # (rrrrrr-N114) force at the connection point that balances the leg's inertia and weight along all freedoms
+        G_t = inv_w_1_t_69*mu_5_z
+        G_t_2 = inv_w_1_t_101*(G_t*w_1_t_18 - N_4_z)
+        G_t_3 = inv_w_1_t_150*(G_t*w_1_t_21 + G_t_2*w_1_t_36 - N_1_z)
+        G_t_4 = inv_w_1_t_194*(G_t*w_1_t_25 + G_t_2*w_1_t_42 - N_2_z - G_t_3*w_1_t_58)
+        G_t_5 = (
+        inv_w_1_t_222*(N_3_z + G_t*w_1_t_28 + G_t_3*w_1_t_64 + G_t_4*w_1_t_76 - G_t_2*w_1_t_47)
+        )
+        G_t_6 = size*(G_t_2*w_1_t_34 + G_t_3*w_1_t_56 + G_t_4*w_1_t_74 - G_t_5*w_1_t_86)
+        G_t_7 = (
+        size*(G_t_2*w_1_t_35 + G_t_3*w_1_t_57 + G_t_4*w_1_t_75 - G_t*w_1_t_17 - G_t_5*w_1_t_87)
+        )
+        # (rrrrrr-N130) leg force on the platform without actuation and without the mass at the connection point
+        c_x = (
+        G_t_3*w_1_t_53 + G_t_4*w_1_t_71 + W_5_xx*h_5_x - B_5_xy*h_5_y - B_5_xz*h_5_z -
+            G_t_5*w_1_t_83
+        )
+        c_y = (
+        G_t_5*w_1_t_84 + h_5_y*(W_5_t + W_5_t_3) - B_5_yx*h_5_x - B_5_yz*h_5_z - G_t*w_1_t_16 -
+            G_t_2*w_1_t_32 - G_t_3*w_1_t_54 - G_t_4*w_1_t_72
+        )
+        c_z = (
+        G_t_2*w_1_t_33 + G_t_3*w_1_t_55 + G_t_4*w_1_t_73 + h_5_z*(W_5_t + W_5_t_2) - B_5_zx*h_5_x
+            - B_5_zy*h_5_y - G_t_5*w_1_t_85
+        )
+        # (rrrrrr-N126) moment at the connection point that balances the leg's inertia and weight along all freedoms
+        G_m_t = G_t_6*end_p1_r8_y
+        G_m_t_2 = G_t_7*end_p1_r8_y
+        G_m_y = G_t_7*end_p1_r6_x - G_t_6*end_p1_r8_x
+        # (rrrrrr-N130) leg force on the platform without actuation and without the mass at the connection point
+        c_in_base_x = (
+        axis_x_rrrrrr_axes5_x*c_x + axis_y_rrrrrr_axes5_in_base_x*c_y +
+            axis_z_rrrrrr_axes5_in_base_x*c_z
+        )
+        c_in_base_y = (
+        axis_x_rrrrrr_axes5_y*c_x + axis_y_rrrrrr_axes5_in_base_y*c_y +
+            axis_z_rrrrrr_axes5_in_base_y*c_z
+        )
+        c_in_base_z = (
+        axis_x_rrrrrr_axes5_z*c_x + axis_y_rrrrrr_axes5_in_base_z*c_y +
+            axis_z_rrrrrr_axes5_in_base_z*c_z
+        )
+        # (E5) moment that actuators and external wrench must give
+        R_a_t = (
+        G_m_t_2*axis_z_rrrrrr_axes5_in_base_x + c_in_base_z*q_in_base_y -
+            G_m_t*axis_x_rrrrrr_axes5_x - G_m_y*axis_y_rrrrrr_axes5_in_base_x -
+            c_in_base_y*q_in_base_z
+        )
+        R_a_t_2 = (
+        G_m_t_2*axis_z_rrrrrr_axes5_in_base_y + c_in_base_x*q_in_base_z -
+            G_m_t*axis_x_rrrrrr_axes5_y - G_m_y*axis_y_rrrrrr_axes5_in_base_y -
+            c_in_base_z*q_in_base_x
+        )
+        R_a_t_3 = (
+        G_m_t_2*axis_z_rrrrrr_axes5_in_base_z + c_in_base_y*q_in_base_x -
+            G_m_t*axis_x_rrrrrr_axes5_z - G_m_y*axis_y_rrrrrr_axes5_in_base_z -
+            c_in_base_x*q_in_base_y
+        )
+        # (M8) moment of the column's unit force about the platform origin
+        H_a_2_x = (
+        axis_y_rrrrrr_axes5_in_base_x*o_2_y + axis_z_rrrrrr_axes5_in_base_x*o_2_t_2 +
+            q_in_base_y*w_2_in_base_z - axis_x_rrrrrr_axes5_x*o_2_t - q_in_base_z*w_2_in_base_y
+        )
+        H_a_2_y = (
+        axis_y_rrrrrr_axes5_in_base_y*o_2_y + axis_z_rrrrrr_axes5_in_base_y*o_2_t_2 +
+            q_in_base_z*w_2_in_base_x - axis_x_rrrrrr_axes5_y*o_2_t - q_in_base_x*w_2_in_base_z
+        )
+        H_a_2_z = (
+        axis_y_rrrrrr_axes5_in_base_z*o_2_y + axis_z_rrrrrr_axes5_in_base_z*o_2_t_2 +
+            q_in_base_x*w_2_in_base_y - axis_x_rrrrrr_axes5_z*o_2_t - q_in_base_y*w_2_in_base_x
+        )
+        ok = (
+        ok & m.every((abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE * size) &
+            (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
+            (abs(w_1_t_82) > _TOLERANCE * size))
+        )
+        sums = m.added(sums, leg, (
+        c_in_base_x, c_in_base_y, c_in_base_z, R_a_t, R_a_t_2, R_a_t_3,
+        ))
+        out_H[[0, 1, 2, 3, 4, 5][leg]] = w_2_in_base_x
+        out_H[[6, 7, 8, 9, 10, 11][leg]] = w_2_in_base_y
+        out_H[[12, 13, 14, 15, 16, 17][leg]] = w_2_in_base_z
+        out_H[[18, 19, 20, 21, 22, 23][leg]] = H_a_2_x
+        out_H[[24, 25, 26, 27, 28, 29][leg]] = H_a_2_y
+        out_H[[30, 31, 32, 33, 34, 35][leg]] = H_a_2_z
     (
     total_rrrrrr_x, total_rrrrrr_y, total_rrrrrr_z, total_rrrrrr_x_2, total_rrrrrr_y_2,
         total_rrrrrr_z_2,
-    ) = t
+    ) = sums
     # (E4) force that actuators and external wrench must give
     R_t_x = f_p_x - total_rrrrrr_x
     R_t_y = f_p_y - total_rrrrrr_y
@@ -6179,24 +6856,45 @@ def _required_after(c, s, t, f):
     R_a_x = mu_p_in_base_x - total_rrrrrr_x_2
     R_a_y = mu_p_in_base_y - total_rrrrrr_y_2
     R_a_z = mu_p_in_base_z - total_rrrrrr_z_2
-    ok = True
-    return (ok, (R_t_x, R_t_y, R_t_z, R_a_x, R_a_y, R_a_z,),)
+    out_required[0] = R_t_x
+    out_required[1] = R_t_y
+    out_required[2] = R_t_z
+    out_required[3] = R_a_x
+    out_required[4] = R_a_y
+    out_required[5] = R_a_z
+    return ok, (out_required, out_H,)
 
 
 # inverse_kinematics: 0 mul, 0 add, 0 div, 0 sqrt, 0 trig
-def _inverse_kinematics_before(c, q, f):
+def _run_inverse_kinematics(m, q):
+    shared, legs = m.constants("inverse_kinematics")
+    q_1 = q[1]
+    q_2 = q[2]
+    q_3 = q[3]
+    q_4 = q[4]
+    q_5 = q[5]
     ok = True
-    return (ok, (), (),)
-
-
-def _inverse_kinematics_rrrrrr(c, k, x, s, f):
-    q_1, q_2, q_3, q_4, q_5 = x
-    ok = True
-    return (ok, (), (q_1, q_2, q_3, q_4, q_5,),)
+    out_q = m.zeros(30)
+    for leg, k in legs[0]:
+        q_1 = q[[0, 5, 10, 15, 20, 25][leg]]
+        q_2 = q[[1, 6, 11, 16, 21, 26][leg]]
+        q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
+        q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
+        q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
+        out_q[[0, 5, 10, 15, 20, 25][leg]] = q_1
+        out_q[[1, 6, 11, 16, 21, 26][leg]] = q_2
+        out_q[[2, 7, 12, 17, 22, 27][leg]] = q_3
+        out_q[[3, 8, 13, 18, 23, 28][leg]] = q_4
+        out_q[[4, 9, 14, 19, 24, 29][leg]] = q_5
+    return ok, (out_q,)
 
 
 # joint_rates: 2304 mul, 1392 add, 30 div, 30 sqrt, 60 trig
-def _joint_rates_before(c, X, V, q, f):
+def _run_joint_rates(m, X, V, q):
+    sqrt = m.sqrt
+    sin = m.sin
+    cos = m.cos
+    shared, legs = m.constants("joint_rates")
     X_3 = X[3]
     X_4 = X[4]
     X_5 = X[5]
@@ -6207,6 +6905,11 @@ def _joint_rates_before(c, X, V, q, f):
     V_3 = V[3]
     V_4 = V[4]
     V_5 = V[5]
+    q_1 = q[1]
+    q_2 = q[2]
+    q_3 = q[3]
+    q_4 = q[4]
+    q_5 = q[5]
     # X: named entries
     quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6
     quaternion_scale = 2.0/quaternion_norm2
@@ -6238,367 +6941,383 @@ def _joint_rates_before(c, X, V, q, f):
     omega_x = V_3
     omega_y = V_4
     omega_z = V_5
-    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    return (
-    ok, (R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y, t_dot_z, omega_x,
-        omega_y, omega_z,), (),
-    )
-
-
-def _joint_rates_rrrrrr(c, k, x, s, f):
-    sqrt = f.sqrt
-    sin = f.sin
-    cos = f.cos
-    (
-    rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
-        rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx, rrrrrr_base_frame_zy,
-        rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x, rrrrrr_joint3_offset_x,
-        rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x, rrrrrr_platform_joint_axis_platform_x,
-        rrrrrr_platform_joint_axis_platform_y, rrrrrr_platform_joint_axis_platform_z,
-        rrrrrr_platform_joint_offset_x, rrrrrr_platform_point_x, rrrrrr_platform_point_y,
-        rrrrrr_platform_point_z, size, size_t,
-    ) = k
-    q_1, q_2, q_3, q_4, q_5 = x
-    (
-    R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y, t_dot_z, omega_x,
-        omega_y, omega_z,
-    ) = s
-    # (rrrrrr-K10) cosine of the angle of joint 5 from its reference direction
-    c_5_t = sin(q_5)
-    # (rrrrrr-K11) sine of the angle of joint 5 from its reference direction
-    s_5 = cos(q_5)
-    # (rrrrrr-V2) from joint 4 to the connection point, along the links
-    r_4_t = c_5_t*rrrrrr_platform_joint_offset_x
-    r_4_z = rrrrrr_joint5_offset_x + rrrrrr_platform_joint_offset_x*s_5
-    # (rrrrrr-K8) cosine of the angle of joint 4 from its reference direction
-    c_4_t = sin(q_4)
-    # (rrrrrr-K9) sine of the angle of joint 4 from its reference direction
-    s_4 = cos(q_4)
-    # (rrrrrr-V2) from joint 4 to the connection point, along the links
-    r_4_t_2 = r_4_t*s_4
-    r_4_t_3 = c_4_t*r_4_t
-    # (rrrrrr-V3) from joint 3 to the connection point, along the links
-    r_3_x = r_4_z + rrrrrr_joint4_offset_x
-    # (rrrrrr-K6) cosine of the angle of joint 3 from its reference direction
-    c_3 = cos(q_3)
-    # (rrrrrr-K7) sine of the angle of joint 3 from its reference direction
-    s_3 = sin(q_3)
-    # (rrrrrr-V3) from joint 3 to the connection point, along the links
-    r_3_r0_y = c_3*r_4_t_2 + r_3_x*s_3
-    # (rrrrrr-V4) from joint 2 to the connection point, along the links
-    r_2_x = rrrrrr_joint3_offset_x + c_3*r_3_x - r_4_t_2*s_3
-    # (rrrrrr-K4) cosine of the angle of joint 2 from its reference direction
-    c_2_t = sin(q_2)
-    # (rrrrrr-K5) sine of the angle of joint 2 from its reference direction
-    s_2 = cos(q_2)
-    # (rrrrrr-V4) from joint 2 to the connection point, along the links
-    r_2_r0_x = -c_2_t*r_2_x - r_3_r0_y*s_2
-    # (rrrrrr-V5) from joint 1 to the connection point, along the links
-    r_1_z = rrrrrr_joint2_offset_x + r_2_x*s_2 - c_2_t*r_3_r0_y
-    # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-    e_1_r2_x = c_3*s_2 - c_2_t*s_3
-    e_1_r2_y = -c_2_t*c_3 - s_2*s_3
-    v_1_t = c_4_t*e_1_r2_y
-    v_1_t_2 = e_1_r2_y*s_4
-    e_1_r6_x = c_5_t*v_1_t_2 + e_1_r2_x*s_5
-    e_1_r6_y = s_5*v_1_t_2 - c_5_t*e_1_r2_x
-    # (rrrrrr-V5) from joint 1 to the connection point, along the links
-    r_1_r1_x = r_1_z*s_2 - c_2_t*r_2_r0_x
-    r_1_r1_y = -c_2_t*r_1_z - r_2_r0_x*s_2
-    r_1_r2_x = c_3*r_1_r1_x + r_1_r1_y*s_3
-    r_1_r2_y = c_3*r_1_r1_y - r_1_r1_x*s_3
-    r_1_t = r_4_t_3*s_4
-    r_1_r4_x = r_1_t - c_4_t*r_1_r2_y
-    r_1_t_2 = c_4_t*r_4_t_3
-    r_1_r4_y = -r_1_t_2 - r_1_r2_y*s_4
-    r_1_r6_x = r_1_r2_x*s_5 - c_5_t*r_1_r4_y
-    r_1_r6_y = -c_5_t*r_1_r2_x - r_1_r4_y*s_5
-    # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-    v_1_x = e_1_r6_y*r_1_r4_x + r_1_r6_y*v_1_t
-    v_1_y = -e_1_r6_x*r_1_r4_x - r_1_r6_x*v_1_t
-    v_1_z = e_1_r6_x*r_1_r6_y - e_1_r6_y*r_1_r6_x
-    # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-    v_2_t = c_4_t*c_5_t
-    v_2_t_2 = c_4_t*s_5
-    # (rrrrrr-V4) from joint 2 to the connection point, along the links
-    r_2_r0_x_2 = c_3*r_2_x + r_3_r0_y*s_3
-    r_2_r0_y = c_3*r_3_r0_y - r_2_x*s_3
-    r_2_r2_x = r_1_t - c_4_t*r_2_r0_y
-    r_2_r2_y = -r_1_t_2 - r_2_r0_y*s_4
-    r_2_r4_x = r_2_r0_x_2*s_5 - c_5_t*r_2_r2_y
-    r_2_r4_y = -c_5_t*r_2_r0_x_2 - r_2_r2_y*s_5
-    # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-    v_2_x = r_2_r2_x*v_2_t_2 - r_2_r4_y*s_4
-    v_2_y = r_2_r4_x*s_4 - r_2_r2_x*v_2_t
-    v_2_z = r_2_r4_y*v_2_t - r_2_r4_x*v_2_t_2
-    # (rrrrrr-V3) from joint 3 to the connection point, along the links
-    r_3_r1_x = r_1_t - c_4_t*r_4_t_2
-    r_3_r1_y = -r_1_t_2 - r_4_t_2*s_4
-    r_3_r3_x = r_3_x*s_5 - c_5_t*r_3_r1_y
-    r_3_r3_y = -c_5_t*r_3_x - r_3_r1_y*s_5
-    # (rrrrrr-V8) velocity of the connection point per rate of joint 3
-    v_3_x = r_3_r1_x*v_2_t_2 - r_3_r3_y*s_4
-    v_3_y = r_3_r3_x*s_4 - r_3_r1_x*v_2_t
-    v_3_z = r_3_r3_y*v_2_t - r_3_r3_x*v_2_t_2
-    # (rrrrrr-V9) velocity of the connection point per rate of joint 4
-    v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t = c_4_t*s_3
-    w_1_t_2 = c_3*c_4_t
-    axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_2 - c_2_t*w_1_t
-    axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_2 + s_2*w_1_t
-    # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
-    c_1_t = sin(q_1)
-    # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
-    s_1 = cos(q_1)
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    axis_z_rrrrrr_axes5_r7_x = -axis_z_rrrrrr_axes5_r5_x*s_1 - c_1_t*s_4
-    axis_z_rrrrrr_axes5_r7_y = s_1*s_4 - axis_z_rrrrrr_axes5_r5_x*c_1_t
-    axis_z_rrrrrr_axes5_in_base_x = (
-    axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx + axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy
-        + axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
-    )
-    axis_z_rrrrrr_axes5_in_base_y = (
-    axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx + axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy
-        + axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
-    )
-    axis_z_rrrrrr_axes5_in_base_z = (
-    axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx + axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy
-        + axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
-    )
-    w_1_t_3 = s_4*s_5
-    axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_3
-    axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_3 - c_5_t*s_3
-    axis_y_rrrrrr_axes5_r5_x = -axis_y_rrrrrr_axes5_r4_x*c_2_t - axis_y_rrrrrr_axes5_r4_y*s_2
-    axis_y_rrrrrr_axes5_r5_y = axis_y_rrrrrr_axes5_r4_x*s_2 - axis_y_rrrrrr_axes5_r4_y*c_2_t
-    axis_y_rrrrrr_axes5_r7_x = -axis_y_rrrrrr_axes5_r5_x*s_1 - c_1_t*v_2_t_2
-    axis_y_rrrrrr_axes5_r7_y = s_1*v_2_t_2 - axis_y_rrrrrr_axes5_r5_x*c_1_t
-    axis_y_rrrrrr_axes5_in_base_x = (
-    axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx + axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy
-        + axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
-    )
-    axis_y_rrrrrr_axes5_in_base_y = (
-    axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx + axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy
-        + axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
-    )
-    axis_y_rrrrrr_axes5_in_base_z = (
-    axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx + axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy
-        + axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
-    )
-    axis_x_rrrrrr_axes5_x = (
-    axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_z -
-        axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_y
-    )
-    axis_x_rrrrrr_axes5_y = (
-    axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_x -
-        axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_z
-    )
-    axis_x_rrrrrr_axes5_z = (
-    axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_y -
-        axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_x
-    )
-    # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
-    end_p1_r0_x = (
-    rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xy + R_yx*rrrrrr_base_frame_yy +
-        R_zx*rrrrrr_base_frame_zy) +
-        rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xy +
-        R_yy*rrrrrr_base_frame_yy + R_zy*rrrrrr_base_frame_zy) +
-        rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xy +
-        R_yz*rrrrrr_base_frame_yy + R_zz*rrrrrr_base_frame_zy)
-    )
-    end_p1_r0_y = (
-    rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xz + R_yx*rrrrrr_base_frame_yz +
-        R_zx*rrrrrr_base_frame_zz) +
-        rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xz +
-        R_yy*rrrrrr_base_frame_yz + R_zy*rrrrrr_base_frame_zz) +
-        rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xz +
-        R_yz*rrrrrr_base_frame_yz + R_zz*rrrrrr_base_frame_zz)
-    )
-    end_p1_r0_z = (
-    rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xx + R_yx*rrrrrr_base_frame_yx +
-        R_zx*rrrrrr_base_frame_zx) +
-        rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xx +
-        R_yy*rrrrrr_base_frame_yx + R_zy*rrrrrr_base_frame_zx) +
-        rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xx +
-        R_yz*rrrrrr_base_frame_yx + R_zz*rrrrrr_base_frame_zx)
-    )
-    end_p1_r1_x = end_p1_r0_y*s_1 - c_1_t*end_p1_r0_x
-    end_p1_r1_y = -c_1_t*end_p1_r0_y - end_p1_r0_x*s_1
-    end_p1_r3_x = end_p1_r0_z*s_2 - c_2_t*end_p1_r1_y
-    end_p1_r3_y = -c_2_t*end_p1_r0_z - end_p1_r1_y*s_2
-    end_p1_r4_x = c_3*end_p1_r3_x + end_p1_r3_y*s_3
-    end_p1_r4_y = c_3*end_p1_r3_y - end_p1_r3_x*s_3
-    end_p1_r6_x = end_p1_r1_x*s_4 - c_4_t*end_p1_r4_y
-    end_p1_r6_y = -c_4_t*end_p1_r1_x - end_p1_r4_y*s_4
-    end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
-    end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_4 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
-    w_1_t_5 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
-    w_1_t_6 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
-    w_1_t_7 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
-    w_1_t_8 = size*w_1_t_4
-    w_1_t_9 = size*w_1_t_6
-    w_1_t_10 = size*w_1_t_5
-    w_1_t_11 = size*w_1_t_7
-    w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
-    w_1_t_13 = c_5_t*end_p1_r6_x*size
-    w_1_t_14 = end_p1_r8_y*size
-    w_1_t_15 = sqrt(size_t + w_1_t_14*w_1_t_14)
-    inv_w_1_t_69 = 1.0/w_1_t_15
-    w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
-    w_1_t_17 = inv_w_1_t_69*w_1_t_14
-    w_1_t_18 = w_1_t_13*w_1_t_17
-    w_1_t_19 = w_1_t_16*w_1_t_18
-    w_1_t_20 = w_1_t_13 - w_1_t_17*w_1_t_18
-    w_1_t_21 = v_1_y*w_1_t_16 - w_1_t_17*w_1_t_9
-    w_1_t_22 = v_1_y - w_1_t_16*w_1_t_21
-    w_1_t_23 = w_1_t_9 + w_1_t_17*w_1_t_21
-    w_1_t_24 = w_1_t_11*w_1_t_17
-    w_1_t_25 = v_2_y*w_1_t_16 - w_1_t_24
-    w_1_t_26 = v_2_y - w_1_t_16*w_1_t_25
-    w_1_t_27 = w_1_t_11 + w_1_t_17*w_1_t_25
-    w_1_t_28 = w_1_t_24 - v_3_y*w_1_t_16
-    w_1_t_29 = v_3_y + w_1_t_16*w_1_t_28
-    w_1_t_30 = w_1_t_11 - w_1_t_17*w_1_t_28
-    w_1_t_31 = sqrt(v_4_z*v_4_z + w_1_t_12*w_1_t_12 + w_1_t_19*w_1_t_19 + w_1_t_20*w_1_t_20)
-    inv_w_1_t_101 = 1.0/w_1_t_31
-    w_1_t_32 = inv_w_1_t_101*w_1_t_19
-    w_1_t_33 = inv_w_1_t_101*v_4_z
-    w_1_t_34 = inv_w_1_t_101*w_1_t_12
-    w_1_t_35 = inv_w_1_t_101*w_1_t_20
-    w_1_t_36 = w_1_t_22*w_1_t_32 + w_1_t_23*w_1_t_35 + w_1_t_34*w_1_t_8 - v_1_z*w_1_t_33
-    w_1_t_37 = w_1_t_32*w_1_t_36 - w_1_t_22
-    w_1_t_38 = v_1_z + w_1_t_33*w_1_t_36
-    w_1_t_39 = w_1_t_34*w_1_t_36 - w_1_t_8
-    w_1_t_40 = w_1_t_35*w_1_t_36 - w_1_t_23
-    w_1_t_41 = w_1_t_10*w_1_t_34
-    w_1_t_42 = w_1_t_41 + w_1_t_26*w_1_t_32 + w_1_t_27*w_1_t_35 - v_2_z*w_1_t_33
-    w_1_t_43 = w_1_t_32*w_1_t_42 - w_1_t_26
-    w_1_t_44 = v_2_z + w_1_t_33*w_1_t_42
-    w_1_t_45 = w_1_t_34*w_1_t_42 - w_1_t_10
-    w_1_t_46 = w_1_t_35*w_1_t_42 - w_1_t_27
-    w_1_t_47 = w_1_t_41 + w_1_t_29*w_1_t_32 + w_1_t_30*w_1_t_35 - v_3_z*w_1_t_33
-    w_1_t_48 = w_1_t_32*w_1_t_47 - w_1_t_29
-    w_1_t_49 = v_3_z + w_1_t_33*w_1_t_47
-    w_1_t_50 = w_1_t_34*w_1_t_47 - w_1_t_10
-    w_1_t_51 = w_1_t_35*w_1_t_47 - w_1_t_30
-    w_1_t_52 = (
-    sqrt(v_1_x*v_1_x + w_1_t_37*w_1_t_37 + w_1_t_38*w_1_t_38 + w_1_t_39*w_1_t_39 +
-        w_1_t_40*w_1_t_40)
-    )
-    inv_w_1_t_150 = 1.0/w_1_t_52
-    w_1_t_53 = inv_w_1_t_150*v_1_x
-    w_1_t_54 = inv_w_1_t_150*w_1_t_37
-    w_1_t_55 = inv_w_1_t_150*w_1_t_38
-    w_1_t_56 = inv_w_1_t_150*w_1_t_39
-    w_1_t_57 = inv_w_1_t_150*w_1_t_40
-    w_1_t_58 = (
-    v_2_x*w_1_t_53 + w_1_t_43*w_1_t_54 + w_1_t_44*w_1_t_55 + w_1_t_45*w_1_t_56 + w_1_t_46*w_1_t_57
-    )
-    w_1_t_59 = v_2_x - w_1_t_53*w_1_t_58
-    w_1_t_60 = w_1_t_43 - w_1_t_54*w_1_t_58
-    w_1_t_61 = w_1_t_44 - w_1_t_55*w_1_t_58
-    w_1_t_62 = w_1_t_45 - w_1_t_56*w_1_t_58
-    w_1_t_63 = w_1_t_46 - w_1_t_57*w_1_t_58
-    w_1_t_64 = (
-    v_3_x*w_1_t_53 + w_1_t_48*w_1_t_54 + w_1_t_49*w_1_t_55 + w_1_t_50*w_1_t_56 + w_1_t_51*w_1_t_57
-    )
-    w_1_t_65 = v_3_x - w_1_t_53*w_1_t_64
-    w_1_t_66 = w_1_t_48 - w_1_t_54*w_1_t_64
-    w_1_t_67 = w_1_t_49 - w_1_t_55*w_1_t_64
-    w_1_t_68 = w_1_t_50 - w_1_t_56*w_1_t_64
-    w_1_t_69 = w_1_t_51 - w_1_t_57*w_1_t_64
-    w_1_t_70 = (
-    sqrt(w_1_t_59*w_1_t_59 + w_1_t_60*w_1_t_60 + w_1_t_61*w_1_t_61 + w_1_t_62*w_1_t_62 +
-        w_1_t_63*w_1_t_63)
-    )
-    inv_w_1_t_194 = 1.0/w_1_t_70
-    w_1_t_71 = inv_w_1_t_194*w_1_t_59
-    w_1_t_72 = inv_w_1_t_194*w_1_t_60
-    w_1_t_73 = inv_w_1_t_194*w_1_t_61
-    w_1_t_74 = inv_w_1_t_194*w_1_t_62
-    w_1_t_75 = inv_w_1_t_194*w_1_t_63
-    w_1_t_76 = (
-    w_1_t_65*w_1_t_71 + w_1_t_66*w_1_t_72 + w_1_t_67*w_1_t_73 + w_1_t_68*w_1_t_74 +
-        w_1_t_69*w_1_t_75
-    )
-    w_1_t_77 = w_1_t_65 - w_1_t_71*w_1_t_76
-    w_1_t_78 = w_1_t_66 - w_1_t_72*w_1_t_76
-    w_1_t_79 = w_1_t_67 - w_1_t_73*w_1_t_76
-    w_1_t_80 = w_1_t_68 - w_1_t_74*w_1_t_76
-    w_1_t_81 = w_1_t_69 - w_1_t_75*w_1_t_76
-    w_1_t_82 = (
-    sqrt(w_1_t_77*w_1_t_77 + w_1_t_78*w_1_t_78 + w_1_t_79*w_1_t_79 + w_1_t_80*w_1_t_80 +
-        w_1_t_81*w_1_t_81)
-    )
-    inv_w_1_t_222 = 1.0/w_1_t_82
-    # (M2) coupling block of M
-    q_in_base_x = (
-    R_xx*rrrrrr_platform_point_x + R_xy*rrrrrr_platform_point_y + R_xz*rrrrrr_platform_point_z
-    )
-    q_in_base_y = (
-    R_yx*rrrrrr_platform_point_x + R_yy*rrrrrr_platform_point_y + R_yz*rrrrrr_platform_point_z
-    )
-    q_in_base_z = (
-    R_zx*rrrrrr_platform_point_x + R_zy*rrrrrr_platform_point_y + R_zz*rrrrrr_platform_point_z
-    )
-    # (rrrrrr-V1) velocity of the connection point
-    S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y
-    S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z
-    S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x
-    S_dot_tip_x = (
-    S_dot_x*axis_x_rrrrrr_axes5_x + S_dot_y*axis_x_rrrrrr_axes5_y + S_dot_z*axis_x_rrrrrr_axes5_z
-    )
-    S_dot_tip_y = (
-    S_dot_x*axis_y_rrrrrr_axes5_in_base_x + S_dot_y*axis_y_rrrrrr_axes5_in_base_y +
-        S_dot_z*axis_y_rrrrrr_axes5_in_base_z
-    )
-    S_dot_tip_z = (
-    S_dot_x*axis_z_rrrrrr_axes5_in_base_x + S_dot_y*axis_z_rrrrrr_axes5_in_base_y +
-        S_dot_z*axis_z_rrrrrr_axes5_in_base_z
-    )
-    # (rrrrrr-A14) rate of moment direction 1
-    omega_tip_y = (
-    axis_y_rrrrrr_axes5_in_base_x*omega_x + axis_y_rrrrrr_axes5_in_base_y*omega_y +
-        axis_y_rrrrrr_axes5_in_base_z*omega_z
-    )
-    # (rrrrrr-V35) rate of joint 1
-    qd_1_t = (
-    size*(end_p1_r8_y*(axis_x_rrrrrr_axes5_x*omega_x + axis_x_rrrrrr_axes5_y*omega_y +
-        axis_x_rrrrrr_axes5_z*omega_z) - end_p1_r8_x*omega_tip_y)
-    )
-    qd_1_t_2 = (
-    size*(end_p1_r6_x*omega_tip_y - end_p1_r8_y*(axis_z_rrrrrr_axes5_in_base_x*omega_x +
-        axis_z_rrrrrr_axes5_in_base_y*omega_y + axis_z_rrrrrr_axes5_in_base_z*omega_z))
-    )
-    qd_1_t_3 = (
-    inv_w_1_t_222*(S_dot_tip_y*inv_w_1_t_222*w_1_t_78 + inv_w_1_t_222*qd_1_t*w_1_t_80 +
-        inv_w_1_t_222*qd_1_t_2*w_1_t_81 - S_dot_tip_x*inv_w_1_t_222*w_1_t_77 -
-        S_dot_tip_z*inv_w_1_t_222*w_1_t_79)
-    )
-    qd_1_t_4 = (
-    inv_w_1_t_194*(S_dot_tip_y*w_1_t_72 + qd_1_t*w_1_t_74 + qd_1_t_2*w_1_t_75 -
-        S_dot_tip_x*w_1_t_71 - S_dot_tip_z*w_1_t_73 - qd_1_t_3*w_1_t_76)
-    )
-    qd_1_t_5 = (
-    inv_w_1_t_150*(S_dot_tip_x*w_1_t_53 + S_dot_tip_z*w_1_t_55 + qd_1_t_3*w_1_t_64 +
-        qd_1_t_4*w_1_t_58 - S_dot_tip_y*w_1_t_54 - qd_1_t*w_1_t_56 - qd_1_t_2*w_1_t_57)
-    )
-    qd_1_t_6 = (
-    inv_w_1_t_101*(S_dot_tip_y*w_1_t_32 + qd_1_t*w_1_t_34 + qd_1_t_2*w_1_t_35 + qd_1_t_3*w_1_t_47
-        + qd_1_t_4*w_1_t_42 - S_dot_tip_z*w_1_t_33 - qd_1_t_5*w_1_t_36)
-    )
-    qd_1_t_7 = (
-    inv_w_1_t_69*(S_dot_tip_y*w_1_t_16 + qd_1_t_4*w_1_t_25 + qd_1_t_6*w_1_t_18 - qd_1_t_2*w_1_t_17
-        - qd_1_t_3*w_1_t_28 - qd_1_t_5*w_1_t_21)
-    )
-    ok = (abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE * size) & (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) & (abs(w_1_t_82) > _TOLERANCE * size)
-    return (ok, (), (qd_1_t_5, -qd_1_t_4, -qd_1_t_3, -qd_1_t_6, qd_1_t_7,),)
+    ok = True
+    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    out_qd = m.zeros(30)
+    for leg, k in legs[0]:
+        (
+        rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
+            rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx,
+            rrrrrr_base_frame_zy, rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x,
+            rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x,
+            rrrrrr_platform_joint_axis_platform_x, rrrrrr_platform_joint_axis_platform_y,
+            rrrrrr_platform_joint_axis_platform_z, rrrrrr_platform_joint_offset_x,
+            rrrrrr_platform_point_x, rrrrrr_platform_point_y, rrrrrr_platform_point_z, size,
+            size_t,
+        ) = k
+        q_1 = q[[0, 5, 10, 15, 20, 25][leg]]
+        q_2 = q[[1, 6, 11, 16, 21, 26][leg]]
+        q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
+        q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
+        q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
+        # (rrrrrr-K10) cosine of the angle of joint 5 from its reference direction
+        c_5_t = sin(q_5)
+        # (rrrrrr-K11) sine of the angle of joint 5 from its reference direction
+        s_5 = cos(q_5)
+        # (rrrrrr-V2) from joint 4 to the connection point, along the links
+        r_4_t = c_5_t*rrrrrr_platform_joint_offset_x
+        r_4_z = rrrrrr_joint5_offset_x + rrrrrr_platform_joint_offset_x*s_5
+        # (rrrrrr-K8) cosine of the angle of joint 4 from its reference direction
+        c_4_t = sin(q_4)
+        # (rrrrrr-K9) sine of the angle of joint 4 from its reference direction
+        s_4 = cos(q_4)
+        # (rrrrrr-V2) from joint 4 to the connection point, along the links
+        r_4_t_2 = r_4_t*s_4
+        r_4_t_3 = c_4_t*r_4_t
+        # (rrrrrr-V3) from joint 3 to the connection point, along the links
+        r_3_x = r_4_z + rrrrrr_joint4_offset_x
+        # (rrrrrr-K6) cosine of the angle of joint 3 from its reference direction
+        c_3 = cos(q_3)
+        # (rrrrrr-K7) sine of the angle of joint 3 from its reference direction
+        s_3 = sin(q_3)
+        # (rrrrrr-V3) from joint 3 to the connection point, along the links
+        r_3_r0_y = c_3*r_4_t_2 + r_3_x*s_3
+        # (rrrrrr-V4) from joint 2 to the connection point, along the links
+        r_2_x = rrrrrr_joint3_offset_x + c_3*r_3_x - r_4_t_2*s_3
+        # (rrrrrr-K4) cosine of the angle of joint 2 from its reference direction
+        c_2_t = sin(q_2)
+        # (rrrrrr-K5) sine of the angle of joint 2 from its reference direction
+        s_2 = cos(q_2)
+        # (rrrrrr-V4) from joint 2 to the connection point, along the links
+        r_2_r0_x = -c_2_t*r_2_x - r_3_r0_y*s_2
+        # (rrrrrr-V5) from joint 1 to the connection point, along the links
+        r_1_z = rrrrrr_joint2_offset_x + r_2_x*s_2 - c_2_t*r_3_r0_y
+        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
+        e_1_r2_x = c_3*s_2 - c_2_t*s_3
+        e_1_r2_y = -c_2_t*c_3 - s_2*s_3
+        v_1_t = c_4_t*e_1_r2_y
+        v_1_t_2 = e_1_r2_y*s_4
+        e_1_r6_x = c_5_t*v_1_t_2 + e_1_r2_x*s_5
+        e_1_r6_y = s_5*v_1_t_2 - c_5_t*e_1_r2_x
+        # (rrrrrr-V5) from joint 1 to the connection point, along the links
+        r_1_r1_x = r_1_z*s_2 - c_2_t*r_2_r0_x
+        r_1_r1_y = -c_2_t*r_1_z - r_2_r0_x*s_2
+        r_1_r2_x = c_3*r_1_r1_x + r_1_r1_y*s_3
+        r_1_r2_y = c_3*r_1_r1_y - r_1_r1_x*s_3
+        r_1_t = r_4_t_3*s_4
+        r_1_r4_x = r_1_t - c_4_t*r_1_r2_y
+        r_1_t_2 = c_4_t*r_4_t_3
+        r_1_r4_y = -r_1_t_2 - r_1_r2_y*s_4
+        r_1_r6_x = r_1_r2_x*s_5 - c_5_t*r_1_r4_y
+        r_1_r6_y = -c_5_t*r_1_r2_x - r_1_r4_y*s_5
+        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
+        v_1_x = e_1_r6_y*r_1_r4_x + r_1_r6_y*v_1_t
+        v_1_y = -e_1_r6_x*r_1_r4_x - r_1_r6_x*v_1_t
+        v_1_z = e_1_r6_x*r_1_r6_y - e_1_r6_y*r_1_r6_x
+        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
+        v_2_t = c_4_t*c_5_t
+        v_2_t_2 = c_4_t*s_5
+        # (rrrrrr-V4) from joint 2 to the connection point, along the links
+        r_2_r0_x_2 = c_3*r_2_x + r_3_r0_y*s_3
+        r_2_r0_y = c_3*r_3_r0_y - r_2_x*s_3
+        r_2_r2_x = r_1_t - c_4_t*r_2_r0_y
+        r_2_r2_y = -r_1_t_2 - r_2_r0_y*s_4
+        r_2_r4_x = r_2_r0_x_2*s_5 - c_5_t*r_2_r2_y
+        r_2_r4_y = -c_5_t*r_2_r0_x_2 - r_2_r2_y*s_5
+        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
+        v_2_x = r_2_r2_x*v_2_t_2 - r_2_r4_y*s_4
+        v_2_y = r_2_r4_x*s_4 - r_2_r2_x*v_2_t
+        v_2_z = r_2_r4_y*v_2_t - r_2_r4_x*v_2_t_2
+        # (rrrrrr-V3) from joint 3 to the connection point, along the links
+        r_3_r1_x = r_1_t - c_4_t*r_4_t_2
+        r_3_r1_y = -r_1_t_2 - r_4_t_2*s_4
+        r_3_r3_x = r_3_x*s_5 - c_5_t*r_3_r1_y
+        r_3_r3_y = -c_5_t*r_3_x - r_3_r1_y*s_5
+        # (rrrrrr-V8) velocity of the connection point per rate of joint 3
+        v_3_x = r_3_r1_x*v_2_t_2 - r_3_r3_y*s_4
+        v_3_y = r_3_r3_x*s_4 - r_3_r1_x*v_2_t
+        v_3_z = r_3_r3_y*v_2_t - r_3_r3_x*v_2_t_2
+        # (rrrrrr-V9) velocity of the connection point per rate of joint 4
+        v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
+        # (rrrrrr-V13) force part of reciprocal wrench 1
+        w_1_t = c_4_t*s_3
+        w_1_t_2 = c_3*c_4_t
+        axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_2 - c_2_t*w_1_t
+        axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_2 + s_2*w_1_t
+        # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
+        c_1_t = sin(q_1)
+        # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
+        s_1 = cos(q_1)
+        # (rrrrrr-V13) force part of reciprocal wrench 1
+        axis_z_rrrrrr_axes5_r7_x = -axis_z_rrrrrr_axes5_r5_x*s_1 - c_1_t*s_4
+        axis_z_rrrrrr_axes5_r7_y = s_1*s_4 - axis_z_rrrrrr_axes5_r5_x*c_1_t
+        axis_z_rrrrrr_axes5_in_base_x = (
+        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx +
+            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy +
+            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
+        )
+        axis_z_rrrrrr_axes5_in_base_y = (
+        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx +
+            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy +
+            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
+        )
+        axis_z_rrrrrr_axes5_in_base_z = (
+        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx +
+            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy +
+            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
+        )
+        w_1_t_3 = s_4*s_5
+        axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_3
+        axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_3 - c_5_t*s_3
+        axis_y_rrrrrr_axes5_r5_x = -axis_y_rrrrrr_axes5_r4_x*c_2_t - axis_y_rrrrrr_axes5_r4_y*s_2
+        axis_y_rrrrrr_axes5_r5_y = axis_y_rrrrrr_axes5_r4_x*s_2 - axis_y_rrrrrr_axes5_r4_y*c_2_t
+        axis_y_rrrrrr_axes5_r7_x = -axis_y_rrrrrr_axes5_r5_x*s_1 - c_1_t*v_2_t_2
+        axis_y_rrrrrr_axes5_r7_y = s_1*v_2_t_2 - axis_y_rrrrrr_axes5_r5_x*c_1_t
+        axis_y_rrrrrr_axes5_in_base_x = (
+        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx +
+            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy +
+            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
+        )
+        axis_y_rrrrrr_axes5_in_base_y = (
+        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx +
+            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy +
+            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
+        )
+        axis_y_rrrrrr_axes5_in_base_z = (
+        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx +
+            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy +
+            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
+        )
+        axis_x_rrrrrr_axes5_x = (
+        axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_z -
+            axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_y
+        )
+        axis_x_rrrrrr_axes5_y = (
+        axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_x -
+            axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_z
+        )
+        axis_x_rrrrrr_axes5_z = (
+        axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_y -
+            axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_x
+        )
+        # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
+        end_p1_r0_x = (
+        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xy +
+            R_yx*rrrrrr_base_frame_yy + R_zx*rrrrrr_base_frame_zy) +
+            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xy +
+            R_yy*rrrrrr_base_frame_yy + R_zy*rrrrrr_base_frame_zy) +
+            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xy +
+            R_yz*rrrrrr_base_frame_yy + R_zz*rrrrrr_base_frame_zy)
+        )
+        end_p1_r0_y = (
+        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xz +
+            R_yx*rrrrrr_base_frame_yz + R_zx*rrrrrr_base_frame_zz) +
+            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xz +
+            R_yy*rrrrrr_base_frame_yz + R_zy*rrrrrr_base_frame_zz) +
+            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xz +
+            R_yz*rrrrrr_base_frame_yz + R_zz*rrrrrr_base_frame_zz)
+        )
+        end_p1_r0_z = (
+        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xx +
+            R_yx*rrrrrr_base_frame_yx + R_zx*rrrrrr_base_frame_zx) +
+            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xx +
+            R_yy*rrrrrr_base_frame_yx + R_zy*rrrrrr_base_frame_zx) +
+            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xx +
+            R_yz*rrrrrr_base_frame_yx + R_zz*rrrrrr_base_frame_zx)
+        )
+        end_p1_r1_x = end_p1_r0_y*s_1 - c_1_t*end_p1_r0_x
+        end_p1_r1_y = -c_1_t*end_p1_r0_y - end_p1_r0_x*s_1
+        end_p1_r3_x = end_p1_r0_z*s_2 - c_2_t*end_p1_r1_y
+        end_p1_r3_y = -c_2_t*end_p1_r0_z - end_p1_r1_y*s_2
+        end_p1_r4_x = c_3*end_p1_r3_x + end_p1_r3_y*s_3
+        end_p1_r4_y = c_3*end_p1_r3_y - end_p1_r3_x*s_3
+        end_p1_r6_x = end_p1_r1_x*s_4 - c_4_t*end_p1_r4_y
+        end_p1_r6_y = -c_4_t*end_p1_r1_x - end_p1_r4_y*s_4
+        end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
+        end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
+        # (rrrrrr-V13) force part of reciprocal wrench 1
+        w_1_t_4 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
+        w_1_t_5 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
+        w_1_t_6 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
+        w_1_t_7 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
+        w_1_t_8 = size*w_1_t_4
+        w_1_t_9 = size*w_1_t_6
+        w_1_t_10 = size*w_1_t_5
+        w_1_t_11 = size*w_1_t_7
+        w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
+        w_1_t_13 = c_5_t*end_p1_r6_x*size
+        w_1_t_14 = end_p1_r8_y*size
+        w_1_t_15 = sqrt(size_t + w_1_t_14*w_1_t_14)
+        inv_w_1_t_69 = 1.0/w_1_t_15
+        w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
+        w_1_t_17 = inv_w_1_t_69*w_1_t_14
+        w_1_t_18 = w_1_t_13*w_1_t_17
+        w_1_t_19 = w_1_t_16*w_1_t_18
+        w_1_t_20 = w_1_t_13 - w_1_t_17*w_1_t_18
+        w_1_t_21 = v_1_y*w_1_t_16 - w_1_t_17*w_1_t_9
+        w_1_t_22 = v_1_y - w_1_t_16*w_1_t_21
+        w_1_t_23 = w_1_t_9 + w_1_t_17*w_1_t_21
+        w_1_t_24 = w_1_t_11*w_1_t_17
+        w_1_t_25 = v_2_y*w_1_t_16 - w_1_t_24
+        w_1_t_26 = v_2_y - w_1_t_16*w_1_t_25
+        w_1_t_27 = w_1_t_11 + w_1_t_17*w_1_t_25
+        w_1_t_28 = w_1_t_24 - v_3_y*w_1_t_16
+        w_1_t_29 = v_3_y + w_1_t_16*w_1_t_28
+        w_1_t_30 = w_1_t_11 - w_1_t_17*w_1_t_28
+        w_1_t_31 = sqrt(v_4_z*v_4_z + w_1_t_12*w_1_t_12 + w_1_t_19*w_1_t_19 + w_1_t_20*w_1_t_20)
+        inv_w_1_t_101 = 1.0/w_1_t_31
+        w_1_t_32 = inv_w_1_t_101*w_1_t_19
+        w_1_t_33 = inv_w_1_t_101*v_4_z
+        w_1_t_34 = inv_w_1_t_101*w_1_t_12
+        w_1_t_35 = inv_w_1_t_101*w_1_t_20
+        w_1_t_36 = w_1_t_22*w_1_t_32 + w_1_t_23*w_1_t_35 + w_1_t_34*w_1_t_8 - v_1_z*w_1_t_33
+        w_1_t_37 = w_1_t_32*w_1_t_36 - w_1_t_22
+        w_1_t_38 = v_1_z + w_1_t_33*w_1_t_36
+        w_1_t_39 = w_1_t_34*w_1_t_36 - w_1_t_8
+        w_1_t_40 = w_1_t_35*w_1_t_36 - w_1_t_23
+        w_1_t_41 = w_1_t_10*w_1_t_34
+        w_1_t_42 = w_1_t_41 + w_1_t_26*w_1_t_32 + w_1_t_27*w_1_t_35 - v_2_z*w_1_t_33
+        w_1_t_43 = w_1_t_32*w_1_t_42 - w_1_t_26
+        w_1_t_44 = v_2_z + w_1_t_33*w_1_t_42
+        w_1_t_45 = w_1_t_34*w_1_t_42 - w_1_t_10
+        w_1_t_46 = w_1_t_35*w_1_t_42 - w_1_t_27
+        w_1_t_47 = w_1_t_41 + w_1_t_29*w_1_t_32 + w_1_t_30*w_1_t_35 - v_3_z*w_1_t_33
+        w_1_t_48 = w_1_t_32*w_1_t_47 - w_1_t_29
+        w_1_t_49 = v_3_z + w_1_t_33*w_1_t_47
+        w_1_t_50 = w_1_t_34*w_1_t_47 - w_1_t_10
+        w_1_t_51 = w_1_t_35*w_1_t_47 - w_1_t_30
+        w_1_t_52 = (
+        sqrt(v_1_x*v_1_x + w_1_t_37*w_1_t_37 + w_1_t_38*w_1_t_38 + w_1_t_39*w_1_t_39 +
+            w_1_t_40*w_1_t_40)
+        )
+        inv_w_1_t_150 = 1.0/w_1_t_52
+        w_1_t_53 = inv_w_1_t_150*v_1_x
+        w_1_t_54 = inv_w_1_t_150*w_1_t_37
+        w_1_t_55 = inv_w_1_t_150*w_1_t_38
+        w_1_t_56 = inv_w_1_t_150*w_1_t_39
+        w_1_t_57 = inv_w_1_t_150*w_1_t_40
+        w_1_t_58 = (
+        v_2_x*w_1_t_53 + w_1_t_43*w_1_t_54 + w_1_t_44*w_1_t_55 + w_1_t_45*w_1_t_56 +
+            w_1_t_46*w_1_t_57
+        )
+        w_1_t_59 = v_2_x - w_1_t_53*w_1_t_58
+        w_1_t_60 = w_1_t_43 - w_1_t_54*w_1_t_58
+        w_1_t_61 = w_1_t_44 - w_1_t_55*w_1_t_58
+        w_1_t_62 = w_1_t_45 - w_1_t_56*w_1_t_58
+        w_1_t_63 = w_1_t_46 - w_1_t_57*w_1_t_58
+        w_1_t_64 = (
+        v_3_x*w_1_t_53 + w_1_t_48*w_1_t_54 + w_1_t_49*w_1_t_55 + w_1_t_50*w_1_t_56 +
+            w_1_t_51*w_1_t_57
+        )
+        w_1_t_65 = v_3_x - w_1_t_53*w_1_t_64
+        w_1_t_66 = w_1_t_48 - w_1_t_54*w_1_t_64
+        w_1_t_67 = w_1_t_49 - w_1_t_55*w_1_t_64
+        w_1_t_68 = w_1_t_50 - w_1_t_56*w_1_t_64
+        w_1_t_69 = w_1_t_51 - w_1_t_57*w_1_t_64
+        w_1_t_70 = (
+        sqrt(w_1_t_59*w_1_t_59 + w_1_t_60*w_1_t_60 + w_1_t_61*w_1_t_61 + w_1_t_62*w_1_t_62 +
+            w_1_t_63*w_1_t_63)
+        )
+        inv_w_1_t_194 = 1.0/w_1_t_70
+        w_1_t_71 = inv_w_1_t_194*w_1_t_59
+        w_1_t_72 = inv_w_1_t_194*w_1_t_60
+        w_1_t_73 = inv_w_1_t_194*w_1_t_61
+        w_1_t_74 = inv_w_1_t_194*w_1_t_62
+        w_1_t_75 = inv_w_1_t_194*w_1_t_63
+        w_1_t_76 = (
+        w_1_t_65*w_1_t_71 + w_1_t_66*w_1_t_72 + w_1_t_67*w_1_t_73 + w_1_t_68*w_1_t_74 +
+            w_1_t_69*w_1_t_75
+        )
+        w_1_t_77 = w_1_t_65 - w_1_t_71*w_1_t_76
+        w_1_t_78 = w_1_t_66 - w_1_t_72*w_1_t_76
+        w_1_t_79 = w_1_t_67 - w_1_t_73*w_1_t_76
+        w_1_t_80 = w_1_t_68 - w_1_t_74*w_1_t_76
+        w_1_t_81 = w_1_t_69 - w_1_t_75*w_1_t_76
+        w_1_t_82 = (
+        sqrt(w_1_t_77*w_1_t_77 + w_1_t_78*w_1_t_78 + w_1_t_79*w_1_t_79 + w_1_t_80*w_1_t_80 +
+            w_1_t_81*w_1_t_81)
+        )
+        inv_w_1_t_222 = 1.0/w_1_t_82
+        # (M2) coupling block of M
+        q_in_base_x = (
+        R_xx*rrrrrr_platform_point_x + R_xy*rrrrrr_platform_point_y + R_xz*rrrrrr_platform_point_z
+        )
+        q_in_base_y = (
+        R_yx*rrrrrr_platform_point_x + R_yy*rrrrrr_platform_point_y + R_yz*rrrrrr_platform_point_z
+        )
+        q_in_base_z = (
+        R_zx*rrrrrr_platform_point_x + R_zy*rrrrrr_platform_point_y + R_zz*rrrrrr_platform_point_z
+        )
+        # (rrrrrr-V1) velocity of the connection point
+        S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y
+        S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z
+        S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x
+        S_dot_tip_x = (
+        S_dot_x*axis_x_rrrrrr_axes5_x + S_dot_y*axis_x_rrrrrr_axes5_y +
+            S_dot_z*axis_x_rrrrrr_axes5_z
+        )
+        S_dot_tip_y = (
+        S_dot_x*axis_y_rrrrrr_axes5_in_base_x + S_dot_y*axis_y_rrrrrr_axes5_in_base_y +
+            S_dot_z*axis_y_rrrrrr_axes5_in_base_z
+        )
+        S_dot_tip_z = (
+        S_dot_x*axis_z_rrrrrr_axes5_in_base_x + S_dot_y*axis_z_rrrrrr_axes5_in_base_y +
+            S_dot_z*axis_z_rrrrrr_axes5_in_base_z
+        )
+        # (rrrrrr-A14) rate of moment direction 1
+        omega_tip_y = (
+        axis_y_rrrrrr_axes5_in_base_x*omega_x + axis_y_rrrrrr_axes5_in_base_y*omega_y +
+            axis_y_rrrrrr_axes5_in_base_z*omega_z
+        )
+        # (rrrrrr-V35) rate of joint 1
+        qd_1_t = (
+        size*(end_p1_r8_y*(axis_x_rrrrrr_axes5_x*omega_x + axis_x_rrrrrr_axes5_y*omega_y +
+            axis_x_rrrrrr_axes5_z*omega_z) - end_p1_r8_x*omega_tip_y)
+        )
+        qd_1_t_2 = (
+        size*(end_p1_r6_x*omega_tip_y - end_p1_r8_y*(axis_z_rrrrrr_axes5_in_base_x*omega_x +
+            axis_z_rrrrrr_axes5_in_base_y*omega_y + axis_z_rrrrrr_axes5_in_base_z*omega_z))
+        )
+        qd_1_t_3 = (
+        inv_w_1_t_222*(S_dot_tip_y*inv_w_1_t_222*w_1_t_78 + inv_w_1_t_222*qd_1_t*w_1_t_80 +
+            inv_w_1_t_222*qd_1_t_2*w_1_t_81 - S_dot_tip_x*inv_w_1_t_222*w_1_t_77 -
+            S_dot_tip_z*inv_w_1_t_222*w_1_t_79)
+        )
+        qd_1_t_4 = (
+        inv_w_1_t_194*(S_dot_tip_y*w_1_t_72 + qd_1_t*w_1_t_74 + qd_1_t_2*w_1_t_75 -
+            S_dot_tip_x*w_1_t_71 - S_dot_tip_z*w_1_t_73 - qd_1_t_3*w_1_t_76)
+        )
+        qd_1_t_5 = (
+        inv_w_1_t_150*(S_dot_tip_x*w_1_t_53 + S_dot_tip_z*w_1_t_55 + qd_1_t_3*w_1_t_64 +
+            qd_1_t_4*w_1_t_58 - S_dot_tip_y*w_1_t_54 - qd_1_t*w_1_t_56 - qd_1_t_2*w_1_t_57)
+        )
+        qd_1_t_6 = (
+        inv_w_1_t_101*(S_dot_tip_y*w_1_t_32 + qd_1_t*w_1_t_34 + qd_1_t_2*w_1_t_35 +
+            qd_1_t_3*w_1_t_47 + qd_1_t_4*w_1_t_42 - S_dot_tip_z*w_1_t_33 - qd_1_t_5*w_1_t_36)
+        )
+        qd_1_t_7 = (
+        inv_w_1_t_69*(S_dot_tip_y*w_1_t_16 + qd_1_t_4*w_1_t_25 + qd_1_t_6*w_1_t_18 -
+            qd_1_t_2*w_1_t_17 - qd_1_t_3*w_1_t_28 - qd_1_t_5*w_1_t_21)
+        )
+        ok = (
+        ok & m.every((abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE * size) &
+            (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
+            (abs(w_1_t_82) > _TOLERANCE * size))
+        )
+        out_qd[[0, 5, 10, 15, 20, 25][leg]] = qd_1_t_5
+        out_qd[[1, 6, 11, 16, 21, 26][leg]] = -qd_1_t_4
+        out_qd[[2, 7, 12, 17, 22, 27][leg]] = -qd_1_t_3
+        out_qd[[3, 8, 13, 18, 23, 28][leg]] = -qd_1_t_6
+        out_qd[[4, 9, 14, 19, 24, 29][leg]] = qd_1_t_7
+    return ok, (out_qd,)
 
 
 # joint_accelerations: 3630 mul, 2382 add, 30 div, 30 sqrt, 60 trig
-def _joint_accelerations_before(c, X, V, A, q, f):
+def _run_joint_accelerations(m, X, V, A, q):
+    sqrt = m.sqrt
+    sin = m.sin
+    cos = m.cos
+    shared, legs = m.constants("joint_accelerations")
     X_3 = X[3]
     X_4 = X[4]
     X_5 = X[5]
@@ -6615,6 +7334,11 @@ def _joint_accelerations_before(c, X, V, A, q, f):
     A_3 = A[3]
     A_4 = A[4]
     A_5 = A[5]
+    q_1 = q[1]
+    q_2 = q[2]
+    q_3 = q[3]
+    q_4 = q[4]
+    q_5 = q[5]
     # X: named entries
     quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6
     quaternion_scale = 2.0/quaternion_norm2
@@ -6653,579 +7377,599 @@ def _joint_accelerations_before(c, X, V, A, q, f):
     alpha_x = A_3
     alpha_y = A_4
     alpha_z = A_5
-    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    return (
-    ok, (R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y, t_dot_z, omega_x,
-        omega_y, omega_z, t_ddot_x, t_ddot_y, t_ddot_z, alpha_x, alpha_y, alpha_z,), (),
-    )
-
-
-def _joint_accelerations_rrrrrr(c, k, x, s, f):
-    sqrt = f.sqrt
-    sin = f.sin
-    cos = f.cos
-    (
-    rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
-        rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx, rrrrrr_base_frame_zy,
-        rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x, rrrrrr_joint3_offset_x,
-        rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x, rrrrrr_platform_joint_axis_platform_x,
-        rrrrrr_platform_joint_axis_platform_y, rrrrrr_platform_joint_axis_platform_z,
-        rrrrrr_platform_joint_offset_x, rrrrrr_platform_point_x, rrrrrr_platform_point_y,
-        rrrrrr_platform_point_z, size, size_t,
-    ) = k
-    q_1, q_2, q_3, q_4, q_5 = x
-    (
-    R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y, t_dot_z, omega_x,
-        omega_y, omega_z, t_ddot_x, t_ddot_y, t_ddot_z, alpha_x, alpha_y, alpha_z,
-    ) = s
-    # (rrrrrr-K10) cosine of the angle of joint 5 from its reference direction
-    c_5_t = sin(q_5)
-    # (rrrrrr-K11) sine of the angle of joint 5 from its reference direction
-    s_5 = cos(q_5)
-    # (rrrrrr-V2) from joint 4 to the connection point, along the links
-    r_4_t = c_5_t*rrrrrr_platform_joint_offset_x
-    r_4_z = rrrrrr_joint5_offset_x + rrrrrr_platform_joint_offset_x*s_5
-    # (rrrrrr-K8) cosine of the angle of joint 4 from its reference direction
-    c_4_t = sin(q_4)
-    # (rrrrrr-K9) sine of the angle of joint 4 from its reference direction
-    s_4 = cos(q_4)
-    # (rrrrrr-V2) from joint 4 to the connection point, along the links
-    r_4_t_2 = r_4_t*s_4
-    r_4_t_3 = c_4_t*r_4_t
-    # (rrrrrr-V3) from joint 3 to the connection point, along the links
-    r_3_x = r_4_z + rrrrrr_joint4_offset_x
-    # (rrrrrr-K6) cosine of the angle of joint 3 from its reference direction
-    c_3 = cos(q_3)
-    # (rrrrrr-K7) sine of the angle of joint 3 from its reference direction
-    s_3 = sin(q_3)
-    # (rrrrrr-V3) from joint 3 to the connection point, along the links
-    r_3_r0_y = c_3*r_4_t_2 + r_3_x*s_3
-    # (rrrrrr-V4) from joint 2 to the connection point, along the links
-    r_2_x = rrrrrr_joint3_offset_x + c_3*r_3_x - r_4_t_2*s_3
-    # (rrrrrr-K4) cosine of the angle of joint 2 from its reference direction
-    c_2_t = sin(q_2)
-    # (rrrrrr-K5) sine of the angle of joint 2 from its reference direction
-    s_2 = cos(q_2)
-    # (rrrrrr-V4) from joint 2 to the connection point, along the links
-    r_2_r0_x = -c_2_t*r_2_x - r_3_r0_y*s_2
-    # (rrrrrr-V5) from joint 1 to the connection point, along the links
-    r_1_z = rrrrrr_joint2_offset_x + r_2_x*s_2 - c_2_t*r_3_r0_y
-    # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-    e_1_r2_x = c_3*s_2 - c_2_t*s_3
-    e_1_r2_y = -c_2_t*c_3 - s_2*s_3
-    v_1_t = c_4_t*e_1_r2_y
-    v_1_t_2 = e_1_r2_y*s_4
-    e_1_r6_x = c_5_t*v_1_t_2 + e_1_r2_x*s_5
-    e_1_r6_y = s_5*v_1_t_2 - c_5_t*e_1_r2_x
-    # (rrrrrr-V5) from joint 1 to the connection point, along the links
-    r_1_r1_x = r_1_z*s_2 - c_2_t*r_2_r0_x
-    r_1_r1_y = -c_2_t*r_1_z - r_2_r0_x*s_2
-    r_1_r2_x = c_3*r_1_r1_x + r_1_r1_y*s_3
-    r_1_r2_y = c_3*r_1_r1_y - r_1_r1_x*s_3
-    r_1_t = r_4_t_3*s_4
-    r_1_r4_x = r_1_t - c_4_t*r_1_r2_y
-    r_1_t_2 = c_4_t*r_4_t_3
-    r_1_r4_y = -r_1_t_2 - r_1_r2_y*s_4
-    r_1_r6_x = r_1_r2_x*s_5 - c_5_t*r_1_r4_y
-    r_1_r6_y = -c_5_t*r_1_r2_x - r_1_r4_y*s_5
-    # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-    v_1_x = e_1_r6_y*r_1_r4_x + r_1_r6_y*v_1_t
-    v_1_y = -e_1_r6_x*r_1_r4_x - r_1_r6_x*v_1_t
-    v_1_z = e_1_r6_x*r_1_r6_y - e_1_r6_y*r_1_r6_x
-    # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-    v_2_t = c_4_t*c_5_t
-    v_2_t_2 = c_4_t*s_5
-    # (rrrrrr-V4) from joint 2 to the connection point, along the links
-    r_2_r0_x_2 = c_3*r_2_x + r_3_r0_y*s_3
-    r_2_r0_y = c_3*r_3_r0_y - r_2_x*s_3
-    r_2_r2_x = r_1_t - c_4_t*r_2_r0_y
-    r_2_r2_y = -r_1_t_2 - r_2_r0_y*s_4
-    r_2_r4_x = r_2_r0_x_2*s_5 - c_5_t*r_2_r2_y
-    r_2_r4_y = -c_5_t*r_2_r0_x_2 - r_2_r2_y*s_5
-    # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-    v_2_x = r_2_r2_x*v_2_t_2 - r_2_r4_y*s_4
-    v_2_y = r_2_r4_x*s_4 - r_2_r2_x*v_2_t
-    v_2_z = r_2_r4_y*v_2_t - r_2_r4_x*v_2_t_2
-    # (rrrrrr-V3) from joint 3 to the connection point, along the links
-    r_3_r1_x = r_1_t - c_4_t*r_4_t_2
-    r_3_r1_y = -r_1_t_2 - r_4_t_2*s_4
-    r_3_r3_x = r_3_x*s_5 - c_5_t*r_3_r1_y
-    r_3_r3_y = -c_5_t*r_3_x - r_3_r1_y*s_5
-    # (rrrrrr-V8) velocity of the connection point per rate of joint 3
-    v_3_x = r_3_r1_x*v_2_t_2 - r_3_r3_y*s_4
-    v_3_y = r_3_r3_x*s_4 - r_3_r1_x*v_2_t
-    v_3_z = r_3_r3_y*v_2_t - r_3_r3_x*v_2_t_2
-    # (rrrrrr-V9) velocity of the connection point per rate of joint 4
-    v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t = c_4_t*s_3
-    w_1_t_2 = c_3*c_4_t
-    axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_2 - c_2_t*w_1_t
-    axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_2 + s_2*w_1_t
-    # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
-    c_1_t = sin(q_1)
-    # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
-    s_1 = cos(q_1)
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    axis_z_rrrrrr_axes5_r7_x = -axis_z_rrrrrr_axes5_r5_x*s_1 - c_1_t*s_4
-    axis_z_rrrrrr_axes5_r7_y = s_1*s_4 - axis_z_rrrrrr_axes5_r5_x*c_1_t
-    axis_z_rrrrrr_axes5_in_base_x = (
-    axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx + axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy
-        + axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
-    )
-    axis_z_rrrrrr_axes5_in_base_y = (
-    axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx + axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy
-        + axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
-    )
-    axis_z_rrrrrr_axes5_in_base_z = (
-    axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx + axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy
-        + axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
-    )
-    w_1_t_3 = s_4*s_5
-    axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_3
-    axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_3 - c_5_t*s_3
-    axis_y_rrrrrr_axes5_r5_x = -axis_y_rrrrrr_axes5_r4_x*c_2_t - axis_y_rrrrrr_axes5_r4_y*s_2
-    axis_y_rrrrrr_axes5_r5_y = axis_y_rrrrrr_axes5_r4_x*s_2 - axis_y_rrrrrr_axes5_r4_y*c_2_t
-    axis_y_rrrrrr_axes5_r7_x = -axis_y_rrrrrr_axes5_r5_x*s_1 - c_1_t*v_2_t_2
-    axis_y_rrrrrr_axes5_r7_y = s_1*v_2_t_2 - axis_y_rrrrrr_axes5_r5_x*c_1_t
-    axis_y_rrrrrr_axes5_in_base_x = (
-    axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx + axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy
-        + axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
-    )
-    axis_y_rrrrrr_axes5_in_base_y = (
-    axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx + axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy
-        + axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
-    )
-    axis_y_rrrrrr_axes5_in_base_z = (
-    axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx + axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy
-        + axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
-    )
-    axis_x_rrrrrr_axes5_x = (
-    axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_z -
-        axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_y
-    )
-    axis_x_rrrrrr_axes5_y = (
-    axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_x -
-        axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_z
-    )
-    axis_x_rrrrrr_axes5_z = (
-    axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_y -
-        axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_x
-    )
-    # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
-    end_p1_r0_x = (
-    rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xy + R_yx*rrrrrr_base_frame_yy +
-        R_zx*rrrrrr_base_frame_zy) +
-        rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xy +
-        R_yy*rrrrrr_base_frame_yy + R_zy*rrrrrr_base_frame_zy) +
-        rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xy +
-        R_yz*rrrrrr_base_frame_yy + R_zz*rrrrrr_base_frame_zy)
-    )
-    end_p1_r0_y = (
-    rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xz + R_yx*rrrrrr_base_frame_yz +
-        R_zx*rrrrrr_base_frame_zz) +
-        rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xz +
-        R_yy*rrrrrr_base_frame_yz + R_zy*rrrrrr_base_frame_zz) +
-        rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xz +
-        R_yz*rrrrrr_base_frame_yz + R_zz*rrrrrr_base_frame_zz)
-    )
-    end_p1_r0_z = (
-    rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xx + R_yx*rrrrrr_base_frame_yx +
-        R_zx*rrrrrr_base_frame_zx) +
-        rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xx +
-        R_yy*rrrrrr_base_frame_yx + R_zy*rrrrrr_base_frame_zx) +
-        rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xx +
-        R_yz*rrrrrr_base_frame_yx + R_zz*rrrrrr_base_frame_zx)
-    )
-    end_p1_r1_x = end_p1_r0_y*s_1 - c_1_t*end_p1_r0_x
-    end_p1_r1_y = -c_1_t*end_p1_r0_y - end_p1_r0_x*s_1
-    end_p1_r3_x = end_p1_r0_z*s_2 - c_2_t*end_p1_r1_y
-    end_p1_r3_y = -c_2_t*end_p1_r0_z - end_p1_r1_y*s_2
-    end_p1_r4_x = c_3*end_p1_r3_x + end_p1_r3_y*s_3
-    end_p1_r4_y = c_3*end_p1_r3_y - end_p1_r3_x*s_3
-    end_p1_r6_x = end_p1_r1_x*s_4 - c_4_t*end_p1_r4_y
-    end_p1_r6_y = -c_4_t*end_p1_r1_x - end_p1_r4_y*s_4
-    end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
-    end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_4 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
-    w_1_t_5 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
-    w_1_t_6 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
-    w_1_t_7 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
-    w_1_t_8 = size*w_1_t_4
-    w_1_t_9 = size*w_1_t_6
-    w_1_t_10 = size*w_1_t_5
-    w_1_t_11 = size*w_1_t_7
-    w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
-    w_1_t_13 = c_5_t*end_p1_r6_x*size
-    w_1_t_14 = end_p1_r8_y*size
-    w_1_t_15 = sqrt(size_t + w_1_t_14*w_1_t_14)
-    inv_w_1_t_69 = 1.0/w_1_t_15
-    w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
-    w_1_t_17 = inv_w_1_t_69*w_1_t_14
-    w_1_t_18 = w_1_t_13*w_1_t_17
-    w_1_t_19 = w_1_t_16*w_1_t_18
-    w_1_t_20 = w_1_t_13 - w_1_t_17*w_1_t_18
-    w_1_t_21 = v_1_y*w_1_t_16 - w_1_t_17*w_1_t_9
-    w_1_t_22 = v_1_y - w_1_t_16*w_1_t_21
-    w_1_t_23 = w_1_t_9 + w_1_t_17*w_1_t_21
-    w_1_t_24 = w_1_t_11*w_1_t_17
-    w_1_t_25 = v_2_y*w_1_t_16 - w_1_t_24
-    w_1_t_26 = v_2_y - w_1_t_16*w_1_t_25
-    w_1_t_27 = w_1_t_11 + w_1_t_17*w_1_t_25
-    w_1_t_28 = w_1_t_24 - v_3_y*w_1_t_16
-    w_1_t_29 = v_3_y + w_1_t_16*w_1_t_28
-    w_1_t_30 = w_1_t_11 - w_1_t_17*w_1_t_28
-    w_1_t_31 = sqrt(v_4_z*v_4_z + w_1_t_12*w_1_t_12 + w_1_t_19*w_1_t_19 + w_1_t_20*w_1_t_20)
-    inv_w_1_t_101 = 1.0/w_1_t_31
-    w_1_t_32 = inv_w_1_t_101*w_1_t_19
-    w_1_t_33 = inv_w_1_t_101*v_4_z
-    w_1_t_34 = inv_w_1_t_101*w_1_t_12
-    w_1_t_35 = inv_w_1_t_101*w_1_t_20
-    w_1_t_36 = w_1_t_22*w_1_t_32 + w_1_t_23*w_1_t_35 + w_1_t_34*w_1_t_8 - v_1_z*w_1_t_33
-    w_1_t_37 = w_1_t_32*w_1_t_36 - w_1_t_22
-    w_1_t_38 = v_1_z + w_1_t_33*w_1_t_36
-    w_1_t_39 = w_1_t_34*w_1_t_36 - w_1_t_8
-    w_1_t_40 = w_1_t_35*w_1_t_36 - w_1_t_23
-    w_1_t_41 = w_1_t_10*w_1_t_34
-    w_1_t_42 = w_1_t_41 + w_1_t_26*w_1_t_32 + w_1_t_27*w_1_t_35 - v_2_z*w_1_t_33
-    w_1_t_43 = w_1_t_32*w_1_t_42 - w_1_t_26
-    w_1_t_44 = v_2_z + w_1_t_33*w_1_t_42
-    w_1_t_45 = w_1_t_34*w_1_t_42 - w_1_t_10
-    w_1_t_46 = w_1_t_35*w_1_t_42 - w_1_t_27
-    w_1_t_47 = w_1_t_41 + w_1_t_29*w_1_t_32 + w_1_t_30*w_1_t_35 - v_3_z*w_1_t_33
-    w_1_t_48 = w_1_t_32*w_1_t_47 - w_1_t_29
-    w_1_t_49 = v_3_z + w_1_t_33*w_1_t_47
-    w_1_t_50 = w_1_t_34*w_1_t_47 - w_1_t_10
-    w_1_t_51 = w_1_t_35*w_1_t_47 - w_1_t_30
-    w_1_t_52 = (
-    sqrt(v_1_x*v_1_x + w_1_t_37*w_1_t_37 + w_1_t_38*w_1_t_38 + w_1_t_39*w_1_t_39 +
-        w_1_t_40*w_1_t_40)
-    )
-    inv_w_1_t_150 = 1.0/w_1_t_52
-    w_1_t_53 = inv_w_1_t_150*v_1_x
-    w_1_t_54 = inv_w_1_t_150*w_1_t_37
-    w_1_t_55 = inv_w_1_t_150*w_1_t_38
-    w_1_t_56 = inv_w_1_t_150*w_1_t_39
-    w_1_t_57 = inv_w_1_t_150*w_1_t_40
-    w_1_t_58 = (
-    v_2_x*w_1_t_53 + w_1_t_43*w_1_t_54 + w_1_t_44*w_1_t_55 + w_1_t_45*w_1_t_56 + w_1_t_46*w_1_t_57
-    )
-    w_1_t_59 = v_2_x - w_1_t_53*w_1_t_58
-    w_1_t_60 = w_1_t_43 - w_1_t_54*w_1_t_58
-    w_1_t_61 = w_1_t_44 - w_1_t_55*w_1_t_58
-    w_1_t_62 = w_1_t_45 - w_1_t_56*w_1_t_58
-    w_1_t_63 = w_1_t_46 - w_1_t_57*w_1_t_58
-    w_1_t_64 = (
-    v_3_x*w_1_t_53 + w_1_t_48*w_1_t_54 + w_1_t_49*w_1_t_55 + w_1_t_50*w_1_t_56 + w_1_t_51*w_1_t_57
-    )
-    w_1_t_65 = v_3_x - w_1_t_53*w_1_t_64
-    w_1_t_66 = w_1_t_48 - w_1_t_54*w_1_t_64
-    w_1_t_67 = w_1_t_49 - w_1_t_55*w_1_t_64
-    w_1_t_68 = w_1_t_50 - w_1_t_56*w_1_t_64
-    w_1_t_69 = w_1_t_51 - w_1_t_57*w_1_t_64
-    w_1_t_70 = (
-    sqrt(w_1_t_59*w_1_t_59 + w_1_t_60*w_1_t_60 + w_1_t_61*w_1_t_61 + w_1_t_62*w_1_t_62 +
-        w_1_t_63*w_1_t_63)
-    )
-    inv_w_1_t_194 = 1.0/w_1_t_70
-    w_1_t_71 = inv_w_1_t_194*w_1_t_59
-    w_1_t_72 = inv_w_1_t_194*w_1_t_60
-    w_1_t_73 = inv_w_1_t_194*w_1_t_61
-    w_1_t_74 = inv_w_1_t_194*w_1_t_62
-    w_1_t_75 = inv_w_1_t_194*w_1_t_63
-    w_1_t_76 = (
-    w_1_t_65*w_1_t_71 + w_1_t_66*w_1_t_72 + w_1_t_67*w_1_t_73 + w_1_t_68*w_1_t_74 +
-        w_1_t_69*w_1_t_75
-    )
-    w_1_t_77 = w_1_t_65 - w_1_t_71*w_1_t_76
-    w_1_t_78 = w_1_t_66 - w_1_t_72*w_1_t_76
-    w_1_t_79 = w_1_t_67 - w_1_t_73*w_1_t_76
-    w_1_t_80 = w_1_t_68 - w_1_t_74*w_1_t_76
-    w_1_t_81 = w_1_t_69 - w_1_t_75*w_1_t_76
-    w_1_t_82 = (
-    sqrt(w_1_t_77*w_1_t_77 + w_1_t_78*w_1_t_78 + w_1_t_79*w_1_t_79 + w_1_t_80*w_1_t_80 +
-        w_1_t_81*w_1_t_81)
-    )
-    inv_w_1_t_222 = 1.0/w_1_t_82
-    w_1_t_83 = inv_w_1_t_222*w_1_t_77
-    w_1_t_84 = inv_w_1_t_222*w_1_t_78
-    w_1_t_85 = inv_w_1_t_222*w_1_t_79
-    w_1_t_86 = inv_w_1_t_222*w_1_t_80
-    w_1_t_87 = inv_w_1_t_222*w_1_t_81
-    # (M2) coupling block of M
-    q_in_base_x = (
-    R_xx*rrrrrr_platform_point_x + R_xy*rrrrrr_platform_point_y + R_xz*rrrrrr_platform_point_z
-    )
-    q_in_base_y = (
-    R_yx*rrrrrr_platform_point_x + R_yy*rrrrrr_platform_point_y + R_yz*rrrrrr_platform_point_z
-    )
-    q_in_base_z = (
-    R_zx*rrrrrr_platform_point_x + R_zy*rrrrrr_platform_point_y + R_zz*rrrrrr_platform_point_z
-    )
-    # (rrrrrr-V1) velocity of the connection point
-    S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-    S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-    S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-    S_dot_x = S_dot_t + t_dot_x
-    S_dot_y = S_dot_t_2 + t_dot_y
-    S_dot_z = S_dot_t_3 + t_dot_z
-    S_dot_tip_x = (
-    S_dot_x*axis_x_rrrrrr_axes5_x + S_dot_y*axis_x_rrrrrr_axes5_y + S_dot_z*axis_x_rrrrrr_axes5_z
-    )
-    S_dot_tip_y = (
-    S_dot_x*axis_y_rrrrrr_axes5_in_base_x + S_dot_y*axis_y_rrrrrr_axes5_in_base_y +
-        S_dot_z*axis_y_rrrrrr_axes5_in_base_z
-    )
-    S_dot_tip_z = (
-    S_dot_x*axis_z_rrrrrr_axes5_in_base_x + S_dot_y*axis_z_rrrrrr_axes5_in_base_y +
-        S_dot_z*axis_z_rrrrrr_axes5_in_base_z
-    )
-    # (rrrrrr-A14) rate of moment direction 1
-    omega_tip_x = (
-    axis_x_rrrrrr_axes5_x*omega_x + axis_x_rrrrrr_axes5_y*omega_y + axis_x_rrrrrr_axes5_z*omega_z
-    )
-    omega_tip_y = (
-    axis_y_rrrrrr_axes5_in_base_x*omega_x + axis_y_rrrrrr_axes5_in_base_y*omega_y +
-        axis_y_rrrrrr_axes5_in_base_z*omega_z
-    )
-    omega_tip_z = (
-    axis_z_rrrrrr_axes5_in_base_x*omega_x + axis_z_rrrrrr_axes5_in_base_y*omega_y +
-        axis_z_rrrrrr_axes5_in_base_z*omega_z
-    )
-    nd_m1_t = end_p1_r6_x*omega_tip_y - end_p1_r8_y*omega_tip_z
-    nd_m1_t_2 = end_p1_r8_x*omega_tip_z - end_p1_r6_x*omega_tip_x
-    nd_m1_t_3 = end_p1_r8_y*omega_tip_x - end_p1_r8_x*omega_tip_y
-    # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-    bias_t = rrrrrr_joint2_offset_x*s_2
-    bias_t_2 = c_2_t*rrrrrr_joint2_offset_x
-    d_2_r2_x = bias_t*c_3 - bias_t_2*s_3
-    d_2_r2_y = -bias_t*s_3 - bias_t_2*c_3
-    bias_t_3 = c_4_t*d_2_r2_y
-    bias_t_4 = d_2_r2_y*s_4
-    d_2_r6_x = bias_t_4*c_5_t + d_2_r2_x*s_5
-    d_2_r6_y = bias_t_4*s_5 - c_5_t*d_2_r2_x
-    bias_t_5 = c_3*rrrrrr_joint3_offset_x
-    bias_t_6 = rrrrrr_joint3_offset_x*s_3
-    bias_t_7 = bias_t_6*c_4_t
-    bias_t_8 = bias_t_6*s_4
-    d_3_r4_x = bias_t_5*s_5 - bias_t_8*c_5_t
-    d_3_r4_y = -bias_t_5*c_5_t - bias_t_8*s_5
-    bias_t_9 = rrrrrr_joint4_offset_x*s_5
-    bias_t_10 = c_5_t*rrrrrr_joint4_offset_x
-    bias_t_11 = rrrrrr_joint5_offset_x*s_5
-    bias_t_12 = c_5_t*rrrrrr_joint5_offset_x
-    # (rrrrrr-V35) rate of joint 1
-    qd_1_t = nd_m1_t_3*size
-    qd_1_t_2 = nd_m1_t*size
-    qd_1_t_3 = (
-    inv_w_1_t_222*(S_dot_tip_y*w_1_t_84 + qd_1_t*w_1_t_86 + qd_1_t_2*w_1_t_87 -
-        S_dot_tip_x*w_1_t_83 - S_dot_tip_z*w_1_t_85)
-    )
-    qd_1_t_4 = (
-    inv_w_1_t_194*(S_dot_tip_y*w_1_t_72 + qd_1_t*w_1_t_74 + qd_1_t_2*w_1_t_75 -
-        S_dot_tip_x*w_1_t_71 - S_dot_tip_z*w_1_t_73 - qd_1_t_3*w_1_t_76)
-    )
-    qd_1_t_5 = (
-    inv_w_1_t_150*(S_dot_tip_x*w_1_t_53 + S_dot_tip_z*w_1_t_55 + qd_1_t_3*w_1_t_64 +
-        qd_1_t_4*w_1_t_58 - S_dot_tip_y*w_1_t_54 - qd_1_t*w_1_t_56 - qd_1_t_2*w_1_t_57)
-    )
-    qd_1_t_6 = (
-    inv_w_1_t_101*(S_dot_tip_y*w_1_t_32 + qd_1_t*w_1_t_34 + qd_1_t_2*w_1_t_35 + qd_1_t_3*w_1_t_47
-        + qd_1_t_4*w_1_t_42 - S_dot_tip_z*w_1_t_33 - qd_1_t_5*w_1_t_36)
-    )
-    qd_1_t_7 = (
-    inv_w_1_t_69*(S_dot_tip_y*w_1_t_16 + qd_1_t_4*w_1_t_25 + qd_1_t_6*w_1_t_18 - qd_1_t_2*w_1_t_17
-        - qd_1_t_3*w_1_t_28 - qd_1_t_5*w_1_t_21)
-    )
-    # (rrrrrr-V40) angular velocity of link 1
-    omega_1_t = qd_1_t_5*s_2
-    omega_1_t_2 = c_2_t*qd_1_t_5
-    # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_x = omega_1_t_2*qd_1_t_4
-    zeta_2_y = omega_1_t*qd_1_t_4
-    # (rrrrrr-V42) angular velocity of link 2
-    omega_2_r0_x = c_3*omega_1_t - omega_1_t_2*s_3
-    omega_2_r0_y = -c_3*omega_1_t_2 - omega_1_t*s_3
-    # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_r0_x = c_3*zeta_2_x + s_3*zeta_2_y
-    zeta_2_r0_y = c_3*zeta_2_y - s_3*zeta_2_x
-    # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
-    beta_3_x = zeta_2_r0_x - omega_2_r0_y*qd_1_t_3
-    beta_3_y = zeta_2_r0_y + omega_2_r0_x*qd_1_t_3
-    # (rrrrrr-V44) angular velocity of link 3
-    omega_3_z = -qd_1_t_3 - qd_1_t_4
-    omega_3_r1_x = omega_3_z*s_4 - c_4_t*omega_2_r0_y
-    omega_3_r1_y = -c_4_t*omega_3_z - omega_2_r0_y*s_4
-    # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
-    beta_3_t = beta_3_y*c_4_t
-    beta_3_t_2 = beta_3_y*s_4
-    # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
-    beta_4_x = -beta_3_t - omega_3_r1_y*qd_1_t_6
-    beta_4_y = omega_3_r1_x*qd_1_t_6 - beta_3_t_2
-    # (rrrrrr-V46) angular velocity of link 4
-    omega_4_z = omega_2_r0_x - qd_1_t_6
-    omega_4_t = c_5_t*omega_3_r1_y
-    omega_4_r1_x = omega_4_z*s_5 - omega_4_t
-    omega_4_t_2 = omega_3_r1_y*s_5
-    omega_4_r1_y = -omega_4_t_2 - c_5_t*omega_4_z
-    # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
-    beta_4_t = beta_3_x*s_5
-    beta_4_r1_x = beta_4_t - beta_4_y*c_5_t
-    beta_4_t_2 = beta_3_x*c_5_t
-    beta_4_r1_y = -beta_4_t_2 - beta_4_y*s_5
-    # (rrrrrr-A10) angular acceleration of link 5 at zero joint accelerations
-    beta_5_x = beta_4_r1_x + omega_4_r1_y*qd_1_t_7
-    beta_5_y = beta_4_r1_y - omega_4_r1_x*qd_1_t_7
-    # (rrrrrr-V48) angular velocity of link 5
-    omega_5_z = omega_3_r1_x + qd_1_t_7
-    # (rrrrrr-A14) rate of moment direction 1
-    nd_m1_t_4 = end_p1_r8_y*omega_4_r1_y
-    nd_m1_x = -nd_m1_t_2 - end_p1_r6_x*omega_4_r1_x
-    nd_m1_y = nd_m1_t - end_p1_r6_x*omega_4_r1_y
-    # (rrrrrr-A15) bias of the angular acceleration along moment direction 1
-    nu_1_t = beta_5_x*end_p1_r8_y - beta_5_y*end_p1_r8_x
-    nu_1_t_2 = omega_4_r1_x - omega_tip_x
-    nu_1_t_3 = omega_4_r1_y - omega_tip_y
-    nu_1_t_4 = omega_5_z - omega_tip_z
-    nu_1_t_5 = (
-    nd_m1_x*nu_1_t_2 + nd_m1_y*nu_1_t_3 + nu_1_t_4*(nd_m1_t_4 + end_p1_r8_x*omega_4_r1_x)
-    )
-    nu_1 = nu_1_t - nu_1_t_5
-    # (rrrrrr-A18) acceleration with which the joints turn along moment direction 1
-    alpha_tip_y = (
-    alpha_x*axis_y_rrrrrr_axes5_in_base_x + alpha_y*axis_y_rrrrrr_axes5_in_base_y +
-        alpha_z*axis_y_rrrrrr_axes5_in_base_z
-    )
-    etad_1_t = (
-    end_p1_r8_y*(alpha_x*axis_x_rrrrrr_axes5_x + alpha_y*axis_x_rrrrrr_axes5_y +
-        alpha_z*axis_x_rrrrrr_axes5_z) - alpha_tip_y*end_p1_r8_x
-    )
-    etad_1 = nu_1 - etad_1_t
-    # (rrrrrr-A16) rate of moment direction 2
-    nd_m2_y = -nd_m1_t_3 - end_p1_r8_x*omega_4_r1_y
-    nd_m2_z = nd_m1_t_2 - end_p1_r8_x*omega_5_z
-    # (rrrrrr-A17) bias of the angular acceleration along moment direction 2
-    nu_2_t = beta_5_y*end_p1_r6_x - beta_4_x*end_p1_r8_y
-    nu_2_t_2 = nd_m2_y*nu_1_t_3 + nd_m2_z*nu_1_t_4 + nu_1_t_2*(nd_m1_t_4 + end_p1_r6_x*omega_5_z)
-    nu_2 = nu_2_t - nu_2_t_2
-    # (rrrrrr-A19) acceleration with which the joints turn along moment direction 2
-    etad_2_t = (
-    alpha_tip_y*end_p1_r6_x - end_p1_r8_y*(alpha_x*axis_z_rrrrrr_axes5_in_base_x +
-        alpha_y*axis_z_rrrrrr_axes5_in_base_y + alpha_z*axis_z_rrrrrr_axes5_in_base_z)
-    )
-    etad_2 = nu_2 - etad_2_t
-    # (rrrrrr-A2) acceleration of the connection point without its centripetal part
-    a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-    a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-    a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-    # (rrrrrr-A3) acceleration of the connection point
-    S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-    S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-    S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-    # (rrrrrr-V47) centripetal tensor of link 4
-    W_4_t = omega_3_r1_x*omega_3_r1_x
-    # (rrrrrr-V49) centripetal tensor of link 5
-    W_5_t = omega_4_r1_y*omega_4_r1_y
-    W_5_xy = omega_4_r1_x*omega_4_r1_y
-    # (rrrrrr-V40) angular velocity of link 1
-    omega_1_x = e_1_r6_x*qd_1_t_5
-    omega_1_y = e_1_r6_y*qd_1_t_5
-    omega_1_z = qd_1_t_5*v_1_t
-    # (rrrrrr-V41) centripetal tensor of link 1
-    W_1_t = omega_1_x*omega_1_x
-    W_1_t_2 = omega_1_y*omega_1_y
-    W_1_t_3 = omega_1_z*omega_1_z
-    W_1_xy = omega_1_x*omega_1_y
-    W_1_xz = omega_1_x*omega_1_z
-    W_1_yz = omega_1_y*omega_1_z
-    # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_t = c_4_t*zeta_2_r0_y
-    zeta_2_t_2 = s_4*zeta_2_r0_y
-    zeta_2_r4_x = c_5_t*zeta_2_t_2 + s_5*zeta_2_r0_x
-    zeta_2_r4_y = s_5*zeta_2_t_2 - c_5_t*zeta_2_r0_x
-    # (rrrrrr-V42) angular velocity of link 2
-    omega_2_x = omega_1_x - qd_1_t_4*v_2_t
-    omega_2_y = omega_1_y - qd_1_t_4*v_2_t_2
-    omega_2_z = -omega_1_z - qd_1_t_4*s_4
-    # (rrrrrr-V43) centripetal tensor of link 2
-    W_2_t = omega_2_x*omega_2_x
-    W_2_t_2 = omega_2_y*omega_2_y
-    W_2_t_3 = omega_2_z*omega_2_z
-    W_2_xy = omega_2_x*omega_2_y
-    W_2_xz = omega_2_x*omega_2_z
-    W_2_yz = omega_2_y*omega_2_z
-    # (rrrrrr-V44) angular velocity of link 3
-    omega_3_r3_x = omega_2_r0_x*s_5 - omega_4_t
-    omega_3_r3_y = -omega_4_t_2 - c_5_t*omega_2_r0_x
-    # (rrrrrr-V45) centripetal tensor of link 3
-    W_3_xy = omega_3_r3_x*omega_3_r3_y
-    # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-    bias_t_13 = W_5_xy + beta_4_x
-    bias_x = (
-    W_1_xy*d_2_r6_y + W_1_xz*bias_t_3 + bias_t_7*(W_2_xz + zeta_2_r4_y) + d_3_r4_y*(W_2_xy +
-        zeta_2_t) - bias_t_10*(W_3_xy + beta_3_t) - bias_t_11*(W_4_t + W_5_t) - bias_t_12*(W_5_xy
-        - beta_4_x) - bias_t_9*(W_4_t + omega_3_r3_y*omega_3_r3_y) - d_2_r6_x*(W_1_t_2 + W_1_t_3)
-        - d_3_r4_x*(W_2_t_2 + W_2_t_3) - rrrrrr_platform_joint_offset_x*(W_5_t +
-        omega_5_z*omega_5_z)
-    )
-    bias_y = (
-    W_1_xy*d_2_r6_x + W_1_yz*bias_t_3 + bias_t_10*(W_4_t + omega_3_r3_x*omega_3_r3_x) +
-        bias_t_11*bias_t_13 + bias_t_12*(W_4_t + omega_4_r1_x*omega_4_r1_x) +
-        bias_t_13*rrrrrr_platform_joint_offset_x + bias_t_7*(W_2_yz - zeta_2_r4_x) +
-        bias_t_9*(W_3_xy - beta_3_t) + d_3_r4_x*(W_2_xy - zeta_2_t) - d_2_r6_y*(W_1_t + W_1_t_3) -
-        d_3_r4_y*(W_2_t + W_2_t_3)
-    )
-    bias_z = (
-    bias_t_11*(omega_3_r1_x*omega_4_r1_x - beta_4_r1_y) + bias_t_3*(W_1_t + W_1_t_2) +
-        bias_t_9*(beta_4_t_2 + omega_3_r1_x*omega_3_r3_x - beta_3_t_2*s_5) + d_3_r4_x*(W_2_xz -
-        zeta_2_r4_y) + d_3_r4_y*(W_2_yz + zeta_2_r4_x) +
-        rrrrrr_platform_joint_offset_x*(omega_4_r1_x*omega_5_z - beta_5_y) - W_1_xz*d_2_r6_x -
-        W_1_yz*d_2_r6_y - bias_t_10*(beta_4_t + beta_3_t_2*c_5_t + omega_3_r1_x*omega_3_r3_y) -
-        bias_t_12*(beta_4_r1_x + omega_3_r1_x*omega_4_r1_y) - bias_t_7*(W_2_t + W_2_t_2)
-    )
-    # (rrrrrr-A12) acceleration of the connection point left to the joint accelerations
-    rel_x = (
-    S_ddot_x*axis_x_rrrrrr_axes5_x + S_ddot_y*axis_x_rrrrrr_axes5_y +
-        S_ddot_z*axis_x_rrrrrr_axes5_z - bias_x
-    )
-    rel_y = (
-    S_ddot_x*axis_y_rrrrrr_axes5_in_base_x + S_ddot_y*axis_y_rrrrrr_axes5_in_base_y +
-        S_ddot_z*axis_y_rrrrrr_axes5_in_base_z - bias_y
-    )
-    rel_z = (
-    S_ddot_x*axis_z_rrrrrr_axes5_in_base_x + S_ddot_y*axis_z_rrrrrr_axes5_in_base_y +
-        S_ddot_z*axis_z_rrrrrr_axes5_in_base_z - bias_z
-    )
-    # (rrrrrr-A20) acceleration of joint 1
-    qdd_1_t = etad_1*size
-    qdd_1_t_2 = etad_2*size
-    qdd_1_t_3 = (
-    inv_w_1_t_222*(qdd_1_t*w_1_t_86 + qdd_1_t_2*w_1_t_87 + rel_x*w_1_t_83 + rel_z*w_1_t_85 -
-        rel_y*w_1_t_84)
-    )
-    qdd_1_t_4 = (
-    inv_w_1_t_194*(qdd_1_t*w_1_t_74 + qdd_1_t_2*w_1_t_75 + rel_x*w_1_t_71 + rel_z*w_1_t_73 -
-        qdd_1_t_3*w_1_t_76 - rel_y*w_1_t_72)
-    )
-    qdd_1_t_5 = (
-    inv_w_1_t_150*(qdd_1_t_3*w_1_t_64 + qdd_1_t_4*w_1_t_58 + rel_y*w_1_t_54 - qdd_1_t*w_1_t_56 -
-        qdd_1_t_2*w_1_t_57 - rel_x*w_1_t_53 - rel_z*w_1_t_55)
-    )
-    qdd_1_t_6 = (
-    inv_w_1_t_101*(qdd_1_t*w_1_t_34 + qdd_1_t_2*w_1_t_35 + qdd_1_t_3*w_1_t_47 + qdd_1_t_4*w_1_t_42
-        + rel_z*w_1_t_33 - qdd_1_t_5*w_1_t_36 - rel_y*w_1_t_32)
-    )
-    qdd_1_t_7 = (
-    inv_w_1_t_69*(qdd_1_t_2*w_1_t_17 + qdd_1_t_3*w_1_t_28 + qdd_1_t_5*w_1_t_21 + rel_y*w_1_t_16 -
-        qdd_1_t_4*w_1_t_25 - qdd_1_t_6*w_1_t_18)
-    )
-    ok = (abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE * size) & (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) & (abs(w_1_t_82) > _TOLERANCE * size)
-    return (ok, (), (-qdd_1_t_5, qdd_1_t_4, qdd_1_t_3, qdd_1_t_6, qdd_1_t_7,),)
+    ok = True
+    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    out_qdd = m.zeros(30)
+    for leg, k in legs[0]:
+        (
+        rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
+            rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx,
+            rrrrrr_base_frame_zy, rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x,
+            rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x,
+            rrrrrr_platform_joint_axis_platform_x, rrrrrr_platform_joint_axis_platform_y,
+            rrrrrr_platform_joint_axis_platform_z, rrrrrr_platform_joint_offset_x,
+            rrrrrr_platform_point_x, rrrrrr_platform_point_y, rrrrrr_platform_point_z, size,
+            size_t,
+        ) = k
+        q_1 = q[[0, 5, 10, 15, 20, 25][leg]]
+        q_2 = q[[1, 6, 11, 16, 21, 26][leg]]
+        q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
+        q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
+        q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
+        # (rrrrrr-K10) cosine of the angle of joint 5 from its reference direction
+        c_5_t = sin(q_5)
+        # (rrrrrr-K11) sine of the angle of joint 5 from its reference direction
+        s_5 = cos(q_5)
+        # (rrrrrr-V2) from joint 4 to the connection point, along the links
+        r_4_t = c_5_t*rrrrrr_platform_joint_offset_x
+        r_4_z = rrrrrr_joint5_offset_x + rrrrrr_platform_joint_offset_x*s_5
+        # (rrrrrr-K8) cosine of the angle of joint 4 from its reference direction
+        c_4_t = sin(q_4)
+        # (rrrrrr-K9) sine of the angle of joint 4 from its reference direction
+        s_4 = cos(q_4)
+        # (rrrrrr-V2) from joint 4 to the connection point, along the links
+        r_4_t_2 = r_4_t*s_4
+        r_4_t_3 = c_4_t*r_4_t
+        # (rrrrrr-V3) from joint 3 to the connection point, along the links
+        r_3_x = r_4_z + rrrrrr_joint4_offset_x
+        # (rrrrrr-K6) cosine of the angle of joint 3 from its reference direction
+        c_3 = cos(q_3)
+        # (rrrrrr-K7) sine of the angle of joint 3 from its reference direction
+        s_3 = sin(q_3)
+        # (rrrrrr-V3) from joint 3 to the connection point, along the links
+        r_3_r0_y = c_3*r_4_t_2 + r_3_x*s_3
+        # (rrrrrr-V4) from joint 2 to the connection point, along the links
+        r_2_x = rrrrrr_joint3_offset_x + c_3*r_3_x - r_4_t_2*s_3
+        # (rrrrrr-K4) cosine of the angle of joint 2 from its reference direction
+        c_2_t = sin(q_2)
+        # (rrrrrr-K5) sine of the angle of joint 2 from its reference direction
+        s_2 = cos(q_2)
+        # (rrrrrr-V4) from joint 2 to the connection point, along the links
+        r_2_r0_x = -c_2_t*r_2_x - r_3_r0_y*s_2
+        # (rrrrrr-V5) from joint 1 to the connection point, along the links
+        r_1_z = rrrrrr_joint2_offset_x + r_2_x*s_2 - c_2_t*r_3_r0_y
+        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
+        e_1_r2_x = c_3*s_2 - c_2_t*s_3
+        e_1_r2_y = -c_2_t*c_3 - s_2*s_3
+        v_1_t = c_4_t*e_1_r2_y
+        v_1_t_2 = e_1_r2_y*s_4
+        e_1_r6_x = c_5_t*v_1_t_2 + e_1_r2_x*s_5
+        e_1_r6_y = s_5*v_1_t_2 - c_5_t*e_1_r2_x
+        # (rrrrrr-V5) from joint 1 to the connection point, along the links
+        r_1_r1_x = r_1_z*s_2 - c_2_t*r_2_r0_x
+        r_1_r1_y = -c_2_t*r_1_z - r_2_r0_x*s_2
+        r_1_r2_x = c_3*r_1_r1_x + r_1_r1_y*s_3
+        r_1_r2_y = c_3*r_1_r1_y - r_1_r1_x*s_3
+        r_1_t = r_4_t_3*s_4
+        r_1_r4_x = r_1_t - c_4_t*r_1_r2_y
+        r_1_t_2 = c_4_t*r_4_t_3
+        r_1_r4_y = -r_1_t_2 - r_1_r2_y*s_4
+        r_1_r6_x = r_1_r2_x*s_5 - c_5_t*r_1_r4_y
+        r_1_r6_y = -c_5_t*r_1_r2_x - r_1_r4_y*s_5
+        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
+        v_1_x = e_1_r6_y*r_1_r4_x + r_1_r6_y*v_1_t
+        v_1_y = -e_1_r6_x*r_1_r4_x - r_1_r6_x*v_1_t
+        v_1_z = e_1_r6_x*r_1_r6_y - e_1_r6_y*r_1_r6_x
+        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
+        v_2_t = c_4_t*c_5_t
+        v_2_t_2 = c_4_t*s_5
+        # (rrrrrr-V4) from joint 2 to the connection point, along the links
+        r_2_r0_x_2 = c_3*r_2_x + r_3_r0_y*s_3
+        r_2_r0_y = c_3*r_3_r0_y - r_2_x*s_3
+        r_2_r2_x = r_1_t - c_4_t*r_2_r0_y
+        r_2_r2_y = -r_1_t_2 - r_2_r0_y*s_4
+        r_2_r4_x = r_2_r0_x_2*s_5 - c_5_t*r_2_r2_y
+        r_2_r4_y = -c_5_t*r_2_r0_x_2 - r_2_r2_y*s_5
+        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
+        v_2_x = r_2_r2_x*v_2_t_2 - r_2_r4_y*s_4
+        v_2_y = r_2_r4_x*s_4 - r_2_r2_x*v_2_t
+        v_2_z = r_2_r4_y*v_2_t - r_2_r4_x*v_2_t_2
+        # (rrrrrr-V3) from joint 3 to the connection point, along the links
+        r_3_r1_x = r_1_t - c_4_t*r_4_t_2
+        r_3_r1_y = -r_1_t_2 - r_4_t_2*s_4
+        r_3_r3_x = r_3_x*s_5 - c_5_t*r_3_r1_y
+        r_3_r3_y = -c_5_t*r_3_x - r_3_r1_y*s_5
+        # (rrrrrr-V8) velocity of the connection point per rate of joint 3
+        v_3_x = r_3_r1_x*v_2_t_2 - r_3_r3_y*s_4
+        v_3_y = r_3_r3_x*s_4 - r_3_r1_x*v_2_t
+        v_3_z = r_3_r3_y*v_2_t - r_3_r3_x*v_2_t_2
+        # (rrrrrr-V9) velocity of the connection point per rate of joint 4
+        v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
+        # (rrrrrr-V13) force part of reciprocal wrench 1
+        w_1_t = c_4_t*s_3
+        w_1_t_2 = c_3*c_4_t
+        axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_2 - c_2_t*w_1_t
+        axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_2 + s_2*w_1_t
+        # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
+        c_1_t = sin(q_1)
+        # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
+        s_1 = cos(q_1)
+        # (rrrrrr-V13) force part of reciprocal wrench 1
+        axis_z_rrrrrr_axes5_r7_x = -axis_z_rrrrrr_axes5_r5_x*s_1 - c_1_t*s_4
+        axis_z_rrrrrr_axes5_r7_y = s_1*s_4 - axis_z_rrrrrr_axes5_r5_x*c_1_t
+        axis_z_rrrrrr_axes5_in_base_x = (
+        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx +
+            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy +
+            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
+        )
+        axis_z_rrrrrr_axes5_in_base_y = (
+        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx +
+            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy +
+            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
+        )
+        axis_z_rrrrrr_axes5_in_base_z = (
+        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx +
+            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy +
+            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
+        )
+        w_1_t_3 = s_4*s_5
+        axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_3
+        axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_3 - c_5_t*s_3
+        axis_y_rrrrrr_axes5_r5_x = -axis_y_rrrrrr_axes5_r4_x*c_2_t - axis_y_rrrrrr_axes5_r4_y*s_2
+        axis_y_rrrrrr_axes5_r5_y = axis_y_rrrrrr_axes5_r4_x*s_2 - axis_y_rrrrrr_axes5_r4_y*c_2_t
+        axis_y_rrrrrr_axes5_r7_x = -axis_y_rrrrrr_axes5_r5_x*s_1 - c_1_t*v_2_t_2
+        axis_y_rrrrrr_axes5_r7_y = s_1*v_2_t_2 - axis_y_rrrrrr_axes5_r5_x*c_1_t
+        axis_y_rrrrrr_axes5_in_base_x = (
+        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx +
+            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy +
+            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
+        )
+        axis_y_rrrrrr_axes5_in_base_y = (
+        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx +
+            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy +
+            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
+        )
+        axis_y_rrrrrr_axes5_in_base_z = (
+        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx +
+            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy +
+            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
+        )
+        axis_x_rrrrrr_axes5_x = (
+        axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_z -
+            axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_y
+        )
+        axis_x_rrrrrr_axes5_y = (
+        axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_x -
+            axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_z
+        )
+        axis_x_rrrrrr_axes5_z = (
+        axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_y -
+            axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_x
+        )
+        # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
+        end_p1_r0_x = (
+        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xy +
+            R_yx*rrrrrr_base_frame_yy + R_zx*rrrrrr_base_frame_zy) +
+            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xy +
+            R_yy*rrrrrr_base_frame_yy + R_zy*rrrrrr_base_frame_zy) +
+            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xy +
+            R_yz*rrrrrr_base_frame_yy + R_zz*rrrrrr_base_frame_zy)
+        )
+        end_p1_r0_y = (
+        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xz +
+            R_yx*rrrrrr_base_frame_yz + R_zx*rrrrrr_base_frame_zz) +
+            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xz +
+            R_yy*rrrrrr_base_frame_yz + R_zy*rrrrrr_base_frame_zz) +
+            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xz +
+            R_yz*rrrrrr_base_frame_yz + R_zz*rrrrrr_base_frame_zz)
+        )
+        end_p1_r0_z = (
+        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xx +
+            R_yx*rrrrrr_base_frame_yx + R_zx*rrrrrr_base_frame_zx) +
+            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xx +
+            R_yy*rrrrrr_base_frame_yx + R_zy*rrrrrr_base_frame_zx) +
+            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xx +
+            R_yz*rrrrrr_base_frame_yx + R_zz*rrrrrr_base_frame_zx)
+        )
+        end_p1_r1_x = end_p1_r0_y*s_1 - c_1_t*end_p1_r0_x
+        end_p1_r1_y = -c_1_t*end_p1_r0_y - end_p1_r0_x*s_1
+        end_p1_r3_x = end_p1_r0_z*s_2 - c_2_t*end_p1_r1_y
+        end_p1_r3_y = -c_2_t*end_p1_r0_z - end_p1_r1_y*s_2
+        end_p1_r4_x = c_3*end_p1_r3_x + end_p1_r3_y*s_3
+        end_p1_r4_y = c_3*end_p1_r3_y - end_p1_r3_x*s_3
+        end_p1_r6_x = end_p1_r1_x*s_4 - c_4_t*end_p1_r4_y
+        end_p1_r6_y = -c_4_t*end_p1_r1_x - end_p1_r4_y*s_4
+        end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
+        end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
+        # (rrrrrr-V13) force part of reciprocal wrench 1
+        w_1_t_4 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
+        w_1_t_5 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
+        w_1_t_6 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
+        w_1_t_7 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
+        w_1_t_8 = size*w_1_t_4
+        w_1_t_9 = size*w_1_t_6
+        w_1_t_10 = size*w_1_t_5
+        w_1_t_11 = size*w_1_t_7
+        w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
+        w_1_t_13 = c_5_t*end_p1_r6_x*size
+        w_1_t_14 = end_p1_r8_y*size
+        w_1_t_15 = sqrt(size_t + w_1_t_14*w_1_t_14)
+        inv_w_1_t_69 = 1.0/w_1_t_15
+        w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
+        w_1_t_17 = inv_w_1_t_69*w_1_t_14
+        w_1_t_18 = w_1_t_13*w_1_t_17
+        w_1_t_19 = w_1_t_16*w_1_t_18
+        w_1_t_20 = w_1_t_13 - w_1_t_17*w_1_t_18
+        w_1_t_21 = v_1_y*w_1_t_16 - w_1_t_17*w_1_t_9
+        w_1_t_22 = v_1_y - w_1_t_16*w_1_t_21
+        w_1_t_23 = w_1_t_9 + w_1_t_17*w_1_t_21
+        w_1_t_24 = w_1_t_11*w_1_t_17
+        w_1_t_25 = v_2_y*w_1_t_16 - w_1_t_24
+        w_1_t_26 = v_2_y - w_1_t_16*w_1_t_25
+        w_1_t_27 = w_1_t_11 + w_1_t_17*w_1_t_25
+        w_1_t_28 = w_1_t_24 - v_3_y*w_1_t_16
+        w_1_t_29 = v_3_y + w_1_t_16*w_1_t_28
+        w_1_t_30 = w_1_t_11 - w_1_t_17*w_1_t_28
+        w_1_t_31 = sqrt(v_4_z*v_4_z + w_1_t_12*w_1_t_12 + w_1_t_19*w_1_t_19 + w_1_t_20*w_1_t_20)
+        inv_w_1_t_101 = 1.0/w_1_t_31
+        w_1_t_32 = inv_w_1_t_101*w_1_t_19
+        w_1_t_33 = inv_w_1_t_101*v_4_z
+        w_1_t_34 = inv_w_1_t_101*w_1_t_12
+        w_1_t_35 = inv_w_1_t_101*w_1_t_20
+        w_1_t_36 = w_1_t_22*w_1_t_32 + w_1_t_23*w_1_t_35 + w_1_t_34*w_1_t_8 - v_1_z*w_1_t_33
+        w_1_t_37 = w_1_t_32*w_1_t_36 - w_1_t_22
+        w_1_t_38 = v_1_z + w_1_t_33*w_1_t_36
+        w_1_t_39 = w_1_t_34*w_1_t_36 - w_1_t_8
+        w_1_t_40 = w_1_t_35*w_1_t_36 - w_1_t_23
+        w_1_t_41 = w_1_t_10*w_1_t_34
+        w_1_t_42 = w_1_t_41 + w_1_t_26*w_1_t_32 + w_1_t_27*w_1_t_35 - v_2_z*w_1_t_33
+        w_1_t_43 = w_1_t_32*w_1_t_42 - w_1_t_26
+        w_1_t_44 = v_2_z + w_1_t_33*w_1_t_42
+        w_1_t_45 = w_1_t_34*w_1_t_42 - w_1_t_10
+        w_1_t_46 = w_1_t_35*w_1_t_42 - w_1_t_27
+        w_1_t_47 = w_1_t_41 + w_1_t_29*w_1_t_32 + w_1_t_30*w_1_t_35 - v_3_z*w_1_t_33
+        w_1_t_48 = w_1_t_32*w_1_t_47 - w_1_t_29
+        w_1_t_49 = v_3_z + w_1_t_33*w_1_t_47
+        w_1_t_50 = w_1_t_34*w_1_t_47 - w_1_t_10
+        w_1_t_51 = w_1_t_35*w_1_t_47 - w_1_t_30
+        w_1_t_52 = (
+        sqrt(v_1_x*v_1_x + w_1_t_37*w_1_t_37 + w_1_t_38*w_1_t_38 + w_1_t_39*w_1_t_39 +
+            w_1_t_40*w_1_t_40)
+        )
+        inv_w_1_t_150 = 1.0/w_1_t_52
+        w_1_t_53 = inv_w_1_t_150*v_1_x
+        w_1_t_54 = inv_w_1_t_150*w_1_t_37
+        w_1_t_55 = inv_w_1_t_150*w_1_t_38
+        w_1_t_56 = inv_w_1_t_150*w_1_t_39
+        w_1_t_57 = inv_w_1_t_150*w_1_t_40
+        w_1_t_58 = (
+        v_2_x*w_1_t_53 + w_1_t_43*w_1_t_54 + w_1_t_44*w_1_t_55 + w_1_t_45*w_1_t_56 +
+            w_1_t_46*w_1_t_57
+        )
+        w_1_t_59 = v_2_x - w_1_t_53*w_1_t_58
+        w_1_t_60 = w_1_t_43 - w_1_t_54*w_1_t_58
+        w_1_t_61 = w_1_t_44 - w_1_t_55*w_1_t_58
+        w_1_t_62 = w_1_t_45 - w_1_t_56*w_1_t_58
+        w_1_t_63 = w_1_t_46 - w_1_t_57*w_1_t_58
+        w_1_t_64 = (
+        v_3_x*w_1_t_53 + w_1_t_48*w_1_t_54 + w_1_t_49*w_1_t_55 + w_1_t_50*w_1_t_56 +
+            w_1_t_51*w_1_t_57
+        )
+        w_1_t_65 = v_3_x - w_1_t_53*w_1_t_64
+        w_1_t_66 = w_1_t_48 - w_1_t_54*w_1_t_64
+        w_1_t_67 = w_1_t_49 - w_1_t_55*w_1_t_64
+        w_1_t_68 = w_1_t_50 - w_1_t_56*w_1_t_64
+        w_1_t_69 = w_1_t_51 - w_1_t_57*w_1_t_64
+        w_1_t_70 = (
+        sqrt(w_1_t_59*w_1_t_59 + w_1_t_60*w_1_t_60 + w_1_t_61*w_1_t_61 + w_1_t_62*w_1_t_62 +
+            w_1_t_63*w_1_t_63)
+        )
+        inv_w_1_t_194 = 1.0/w_1_t_70
+        w_1_t_71 = inv_w_1_t_194*w_1_t_59
+        w_1_t_72 = inv_w_1_t_194*w_1_t_60
+        w_1_t_73 = inv_w_1_t_194*w_1_t_61
+        w_1_t_74 = inv_w_1_t_194*w_1_t_62
+        w_1_t_75 = inv_w_1_t_194*w_1_t_63
+        w_1_t_76 = (
+        w_1_t_65*w_1_t_71 + w_1_t_66*w_1_t_72 + w_1_t_67*w_1_t_73 + w_1_t_68*w_1_t_74 +
+            w_1_t_69*w_1_t_75
+        )
+        w_1_t_77 = w_1_t_65 - w_1_t_71*w_1_t_76
+        w_1_t_78 = w_1_t_66 - w_1_t_72*w_1_t_76
+        w_1_t_79 = w_1_t_67 - w_1_t_73*w_1_t_76
+        w_1_t_80 = w_1_t_68 - w_1_t_74*w_1_t_76
+        w_1_t_81 = w_1_t_69 - w_1_t_75*w_1_t_76
+        w_1_t_82 = (
+        sqrt(w_1_t_77*w_1_t_77 + w_1_t_78*w_1_t_78 + w_1_t_79*w_1_t_79 + w_1_t_80*w_1_t_80 +
+            w_1_t_81*w_1_t_81)
+        )
+        inv_w_1_t_222 = 1.0/w_1_t_82
+        w_1_t_83 = inv_w_1_t_222*w_1_t_77
+        w_1_t_84 = inv_w_1_t_222*w_1_t_78
+        w_1_t_85 = inv_w_1_t_222*w_1_t_79
+        w_1_t_86 = inv_w_1_t_222*w_1_t_80
+        w_1_t_87 = inv_w_1_t_222*w_1_t_81
+        # (M2) coupling block of M
+        q_in_base_x = (
+        R_xx*rrrrrr_platform_point_x + R_xy*rrrrrr_platform_point_y + R_xz*rrrrrr_platform_point_z
+        )
+        q_in_base_y = (
+        R_yx*rrrrrr_platform_point_x + R_yy*rrrrrr_platform_point_y + R_yz*rrrrrr_platform_point_z
+        )
+        q_in_base_z = (
+        R_zx*rrrrrr_platform_point_x + R_zy*rrrrrr_platform_point_y + R_zz*rrrrrr_platform_point_z
+        )
+        # (rrrrrr-V1) velocity of the connection point
+        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
+        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
+        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
+        S_dot_x = S_dot_t + t_dot_x
+        S_dot_y = S_dot_t_2 + t_dot_y
+        S_dot_z = S_dot_t_3 + t_dot_z
+        S_dot_tip_x = (
+        S_dot_x*axis_x_rrrrrr_axes5_x + S_dot_y*axis_x_rrrrrr_axes5_y +
+            S_dot_z*axis_x_rrrrrr_axes5_z
+        )
+        S_dot_tip_y = (
+        S_dot_x*axis_y_rrrrrr_axes5_in_base_x + S_dot_y*axis_y_rrrrrr_axes5_in_base_y +
+            S_dot_z*axis_y_rrrrrr_axes5_in_base_z
+        )
+        S_dot_tip_z = (
+        S_dot_x*axis_z_rrrrrr_axes5_in_base_x + S_dot_y*axis_z_rrrrrr_axes5_in_base_y +
+            S_dot_z*axis_z_rrrrrr_axes5_in_base_z
+        )
+        # (rrrrrr-A14) rate of moment direction 1
+        omega_tip_x = (
+        axis_x_rrrrrr_axes5_x*omega_x + axis_x_rrrrrr_axes5_y*omega_y +
+            axis_x_rrrrrr_axes5_z*omega_z
+        )
+        omega_tip_y = (
+        axis_y_rrrrrr_axes5_in_base_x*omega_x + axis_y_rrrrrr_axes5_in_base_y*omega_y +
+            axis_y_rrrrrr_axes5_in_base_z*omega_z
+        )
+        omega_tip_z = (
+        axis_z_rrrrrr_axes5_in_base_x*omega_x + axis_z_rrrrrr_axes5_in_base_y*omega_y +
+            axis_z_rrrrrr_axes5_in_base_z*omega_z
+        )
+        nd_m1_t = end_p1_r6_x*omega_tip_y - end_p1_r8_y*omega_tip_z
+        nd_m1_t_2 = end_p1_r8_x*omega_tip_z - end_p1_r6_x*omega_tip_x
+        nd_m1_t_3 = end_p1_r8_y*omega_tip_x - end_p1_r8_x*omega_tip_y
+        # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
+        bias_t = rrrrrr_joint2_offset_x*s_2
+        bias_t_2 = c_2_t*rrrrrr_joint2_offset_x
+        d_2_r2_x = bias_t*c_3 - bias_t_2*s_3
+        d_2_r2_y = -bias_t*s_3 - bias_t_2*c_3
+        bias_t_3 = c_4_t*d_2_r2_y
+        bias_t_4 = d_2_r2_y*s_4
+        d_2_r6_x = bias_t_4*c_5_t + d_2_r2_x*s_5
+        d_2_r6_y = bias_t_4*s_5 - c_5_t*d_2_r2_x
+        bias_t_5 = c_3*rrrrrr_joint3_offset_x
+        bias_t_6 = rrrrrr_joint3_offset_x*s_3
+        bias_t_7 = bias_t_6*c_4_t
+        bias_t_8 = bias_t_6*s_4
+        d_3_r4_x = bias_t_5*s_5 - bias_t_8*c_5_t
+        d_3_r4_y = -bias_t_5*c_5_t - bias_t_8*s_5
+        bias_t_9 = rrrrrr_joint4_offset_x*s_5
+        bias_t_10 = c_5_t*rrrrrr_joint4_offset_x
+        bias_t_11 = rrrrrr_joint5_offset_x*s_5
+        bias_t_12 = c_5_t*rrrrrr_joint5_offset_x
+        # (rrrrrr-V35) rate of joint 1
+        qd_1_t = nd_m1_t_3*size
+        qd_1_t_2 = nd_m1_t*size
+        qd_1_t_3 = (
+        inv_w_1_t_222*(S_dot_tip_y*w_1_t_84 + qd_1_t*w_1_t_86 + qd_1_t_2*w_1_t_87 -
+            S_dot_tip_x*w_1_t_83 - S_dot_tip_z*w_1_t_85)
+        )
+        qd_1_t_4 = (
+        inv_w_1_t_194*(S_dot_tip_y*w_1_t_72 + qd_1_t*w_1_t_74 + qd_1_t_2*w_1_t_75 -
+            S_dot_tip_x*w_1_t_71 - S_dot_tip_z*w_1_t_73 - qd_1_t_3*w_1_t_76)
+        )
+        qd_1_t_5 = (
+        inv_w_1_t_150*(S_dot_tip_x*w_1_t_53 + S_dot_tip_z*w_1_t_55 + qd_1_t_3*w_1_t_64 +
+            qd_1_t_4*w_1_t_58 - S_dot_tip_y*w_1_t_54 - qd_1_t*w_1_t_56 - qd_1_t_2*w_1_t_57)
+        )
+        qd_1_t_6 = (
+        inv_w_1_t_101*(S_dot_tip_y*w_1_t_32 + qd_1_t*w_1_t_34 + qd_1_t_2*w_1_t_35 +
+            qd_1_t_3*w_1_t_47 + qd_1_t_4*w_1_t_42 - S_dot_tip_z*w_1_t_33 - qd_1_t_5*w_1_t_36)
+        )
+        qd_1_t_7 = (
+        inv_w_1_t_69*(S_dot_tip_y*w_1_t_16 + qd_1_t_4*w_1_t_25 + qd_1_t_6*w_1_t_18 -
+            qd_1_t_2*w_1_t_17 - qd_1_t_3*w_1_t_28 - qd_1_t_5*w_1_t_21)
+        )
+        # (rrrrrr-V40) angular velocity of link 1
+        omega_1_t = qd_1_t_5*s_2
+        omega_1_t_2 = c_2_t*qd_1_t_5
+        # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
+        zeta_2_x = omega_1_t_2*qd_1_t_4
+        zeta_2_y = omega_1_t*qd_1_t_4
+        # (rrrrrr-V42) angular velocity of link 2
+        omega_2_r0_x = c_3*omega_1_t - omega_1_t_2*s_3
+        omega_2_r0_y = -c_3*omega_1_t_2 - omega_1_t*s_3
+        # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
+        zeta_2_r0_x = c_3*zeta_2_x + s_3*zeta_2_y
+        zeta_2_r0_y = c_3*zeta_2_y - s_3*zeta_2_x
+        # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
+        beta_3_x = zeta_2_r0_x - omega_2_r0_y*qd_1_t_3
+        beta_3_y = zeta_2_r0_y + omega_2_r0_x*qd_1_t_3
+        # (rrrrrr-V44) angular velocity of link 3
+        omega_3_z = -qd_1_t_3 - qd_1_t_4
+        omega_3_r1_x = omega_3_z*s_4 - c_4_t*omega_2_r0_y
+        omega_3_r1_y = -c_4_t*omega_3_z - omega_2_r0_y*s_4
+        # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
+        beta_3_t = beta_3_y*c_4_t
+        beta_3_t_2 = beta_3_y*s_4
+        # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
+        beta_4_x = -beta_3_t - omega_3_r1_y*qd_1_t_6
+        beta_4_y = omega_3_r1_x*qd_1_t_6 - beta_3_t_2
+        # (rrrrrr-V46) angular velocity of link 4
+        omega_4_z = omega_2_r0_x - qd_1_t_6
+        omega_4_t = c_5_t*omega_3_r1_y
+        omega_4_r1_x = omega_4_z*s_5 - omega_4_t
+        omega_4_t_2 = omega_3_r1_y*s_5
+        omega_4_r1_y = -omega_4_t_2 - c_5_t*omega_4_z
+        # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
+        beta_4_t = beta_3_x*s_5
+        beta_4_r1_x = beta_4_t - beta_4_y*c_5_t
+        beta_4_t_2 = beta_3_x*c_5_t
+        beta_4_r1_y = -beta_4_t_2 - beta_4_y*s_5
+        # (rrrrrr-A10) angular acceleration of link 5 at zero joint accelerations
+        beta_5_x = beta_4_r1_x + omega_4_r1_y*qd_1_t_7
+        beta_5_y = beta_4_r1_y - omega_4_r1_x*qd_1_t_7
+        # (rrrrrr-V48) angular velocity of link 5
+        omega_5_z = omega_3_r1_x + qd_1_t_7
+        # (rrrrrr-A14) rate of moment direction 1
+        nd_m1_t_4 = end_p1_r8_y*omega_4_r1_y
+        nd_m1_x = -nd_m1_t_2 - end_p1_r6_x*omega_4_r1_x
+        nd_m1_y = nd_m1_t - end_p1_r6_x*omega_4_r1_y
+        # (rrrrrr-A15) bias of the angular acceleration along moment direction 1
+        nu_1_t = beta_5_x*end_p1_r8_y - beta_5_y*end_p1_r8_x
+        nu_1_t_2 = omega_4_r1_x - omega_tip_x
+        nu_1_t_3 = omega_4_r1_y - omega_tip_y
+        nu_1_t_4 = omega_5_z - omega_tip_z
+        nu_1_t_5 = (
+        nd_m1_x*nu_1_t_2 + nd_m1_y*nu_1_t_3 + nu_1_t_4*(nd_m1_t_4 + end_p1_r8_x*omega_4_r1_x)
+        )
+        nu_1 = nu_1_t - nu_1_t_5
+        # (rrrrrr-A18) acceleration with which the joints turn along moment direction 1
+        alpha_tip_y = (
+        alpha_x*axis_y_rrrrrr_axes5_in_base_x + alpha_y*axis_y_rrrrrr_axes5_in_base_y +
+            alpha_z*axis_y_rrrrrr_axes5_in_base_z
+        )
+        etad_1_t = (
+        end_p1_r8_y*(alpha_x*axis_x_rrrrrr_axes5_x + alpha_y*axis_x_rrrrrr_axes5_y +
+            alpha_z*axis_x_rrrrrr_axes5_z) - alpha_tip_y*end_p1_r8_x
+        )
+        etad_1 = nu_1 - etad_1_t
+        # (rrrrrr-A16) rate of moment direction 2
+        nd_m2_y = -nd_m1_t_3 - end_p1_r8_x*omega_4_r1_y
+        nd_m2_z = nd_m1_t_2 - end_p1_r8_x*omega_5_z
+        # (rrrrrr-A17) bias of the angular acceleration along moment direction 2
+        nu_2_t = beta_5_y*end_p1_r6_x - beta_4_x*end_p1_r8_y
+        nu_2_t_2 = (
+        nd_m2_y*nu_1_t_3 + nd_m2_z*nu_1_t_4 + nu_1_t_2*(nd_m1_t_4 + end_p1_r6_x*omega_5_z)
+        )
+        nu_2 = nu_2_t - nu_2_t_2
+        # (rrrrrr-A19) acceleration with which the joints turn along moment direction 2
+        etad_2_t = (
+        alpha_tip_y*end_p1_r6_x - end_p1_r8_y*(alpha_x*axis_z_rrrrrr_axes5_in_base_x +
+            alpha_y*axis_z_rrrrrr_axes5_in_base_y + alpha_z*axis_z_rrrrrr_axes5_in_base_z)
+        )
+        etad_2 = nu_2 - etad_2_t
+        # (rrrrrr-A2) acceleration of the connection point without its centripetal part
+        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
+        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
+        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
+        # (rrrrrr-A3) acceleration of the connection point
+        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
+        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
+        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
+        # (rrrrrr-V47) centripetal tensor of link 4
+        W_4_t = omega_3_r1_x*omega_3_r1_x
+        # (rrrrrr-V49) centripetal tensor of link 5
+        W_5_t = omega_4_r1_y*omega_4_r1_y
+        W_5_xy = omega_4_r1_x*omega_4_r1_y
+        # (rrrrrr-V40) angular velocity of link 1
+        omega_1_x = e_1_r6_x*qd_1_t_5
+        omega_1_y = e_1_r6_y*qd_1_t_5
+        omega_1_z = qd_1_t_5*v_1_t
+        # (rrrrrr-V41) centripetal tensor of link 1
+        W_1_t = omega_1_x*omega_1_x
+        W_1_t_2 = omega_1_y*omega_1_y
+        W_1_t_3 = omega_1_z*omega_1_z
+        W_1_xy = omega_1_x*omega_1_y
+        W_1_xz = omega_1_x*omega_1_z
+        W_1_yz = omega_1_y*omega_1_z
+        # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
+        zeta_2_t = c_4_t*zeta_2_r0_y
+        zeta_2_t_2 = s_4*zeta_2_r0_y
+        zeta_2_r4_x = c_5_t*zeta_2_t_2 + s_5*zeta_2_r0_x
+        zeta_2_r4_y = s_5*zeta_2_t_2 - c_5_t*zeta_2_r0_x
+        # (rrrrrr-V42) angular velocity of link 2
+        omega_2_x = omega_1_x - qd_1_t_4*v_2_t
+        omega_2_y = omega_1_y - qd_1_t_4*v_2_t_2
+        omega_2_z = -omega_1_z - qd_1_t_4*s_4
+        # (rrrrrr-V43) centripetal tensor of link 2
+        W_2_t = omega_2_x*omega_2_x
+        W_2_t_2 = omega_2_y*omega_2_y
+        W_2_t_3 = omega_2_z*omega_2_z
+        W_2_xy = omega_2_x*omega_2_y
+        W_2_xz = omega_2_x*omega_2_z
+        W_2_yz = omega_2_y*omega_2_z
+        # (rrrrrr-V44) angular velocity of link 3
+        omega_3_r3_x = omega_2_r0_x*s_5 - omega_4_t
+        omega_3_r3_y = -omega_4_t_2 - c_5_t*omega_2_r0_x
+        # (rrrrrr-V45) centripetal tensor of link 3
+        W_3_xy = omega_3_r3_x*omega_3_r3_y
+        # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
+        bias_t_13 = W_5_xy + beta_4_x
+        bias_x = (
+        W_1_xy*d_2_r6_y + W_1_xz*bias_t_3 + bias_t_7*(W_2_xz + zeta_2_r4_y) + d_3_r4_y*(W_2_xy +
+            zeta_2_t) - bias_t_10*(W_3_xy + beta_3_t) - bias_t_11*(W_4_t + W_5_t) -
+            bias_t_12*(W_5_xy - beta_4_x) - bias_t_9*(W_4_t + omega_3_r3_y*omega_3_r3_y) -
+            d_2_r6_x*(W_1_t_2 + W_1_t_3) - d_3_r4_x*(W_2_t_2 + W_2_t_3) -
+            rrrrrr_platform_joint_offset_x*(W_5_t + omega_5_z*omega_5_z)
+        )
+        bias_y = (
+        W_1_xy*d_2_r6_x + W_1_yz*bias_t_3 + bias_t_10*(W_4_t + omega_3_r3_x*omega_3_r3_x) +
+            bias_t_11*bias_t_13 + bias_t_12*(W_4_t + omega_4_r1_x*omega_4_r1_x) +
+            bias_t_13*rrrrrr_platform_joint_offset_x + bias_t_7*(W_2_yz - zeta_2_r4_x) +
+            bias_t_9*(W_3_xy - beta_3_t) + d_3_r4_x*(W_2_xy - zeta_2_t) - d_2_r6_y*(W_1_t +
+            W_1_t_3) - d_3_r4_y*(W_2_t + W_2_t_3)
+        )
+        bias_z = (
+        bias_t_11*(omega_3_r1_x*omega_4_r1_x - beta_4_r1_y) + bias_t_3*(W_1_t + W_1_t_2) +
+            bias_t_9*(beta_4_t_2 + omega_3_r1_x*omega_3_r3_x - beta_3_t_2*s_5) + d_3_r4_x*(W_2_xz
+            - zeta_2_r4_y) + d_3_r4_y*(W_2_yz + zeta_2_r4_x) +
+            rrrrrr_platform_joint_offset_x*(omega_4_r1_x*omega_5_z - beta_5_y) - W_1_xz*d_2_r6_x -
+            W_1_yz*d_2_r6_y - bias_t_10*(beta_4_t + beta_3_t_2*c_5_t + omega_3_r1_x*omega_3_r3_y)
+            - bias_t_12*(beta_4_r1_x + omega_3_r1_x*omega_4_r1_y) - bias_t_7*(W_2_t + W_2_t_2)
+        )
+        # (rrrrrr-A12) acceleration of the connection point left to the joint accelerations
+        rel_x = (
+        S_ddot_x*axis_x_rrrrrr_axes5_x + S_ddot_y*axis_x_rrrrrr_axes5_y +
+            S_ddot_z*axis_x_rrrrrr_axes5_z - bias_x
+        )
+        rel_y = (
+        S_ddot_x*axis_y_rrrrrr_axes5_in_base_x + S_ddot_y*axis_y_rrrrrr_axes5_in_base_y +
+            S_ddot_z*axis_y_rrrrrr_axes5_in_base_z - bias_y
+        )
+        rel_z = (
+        S_ddot_x*axis_z_rrrrrr_axes5_in_base_x + S_ddot_y*axis_z_rrrrrr_axes5_in_base_y +
+            S_ddot_z*axis_z_rrrrrr_axes5_in_base_z - bias_z
+        )
+        # (rrrrrr-A20) acceleration of joint 1
+        qdd_1_t = etad_1*size
+        qdd_1_t_2 = etad_2*size
+        qdd_1_t_3 = (
+        inv_w_1_t_222*(qdd_1_t*w_1_t_86 + qdd_1_t_2*w_1_t_87 + rel_x*w_1_t_83 + rel_z*w_1_t_85 -
+            rel_y*w_1_t_84)
+        )
+        qdd_1_t_4 = (
+        inv_w_1_t_194*(qdd_1_t*w_1_t_74 + qdd_1_t_2*w_1_t_75 + rel_x*w_1_t_71 + rel_z*w_1_t_73 -
+            qdd_1_t_3*w_1_t_76 - rel_y*w_1_t_72)
+        )
+        qdd_1_t_5 = (
+        inv_w_1_t_150*(qdd_1_t_3*w_1_t_64 + qdd_1_t_4*w_1_t_58 + rel_y*w_1_t_54 - qdd_1_t*w_1_t_56
+            - qdd_1_t_2*w_1_t_57 - rel_x*w_1_t_53 - rel_z*w_1_t_55)
+        )
+        qdd_1_t_6 = (
+        inv_w_1_t_101*(qdd_1_t*w_1_t_34 + qdd_1_t_2*w_1_t_35 + qdd_1_t_3*w_1_t_47 +
+            qdd_1_t_4*w_1_t_42 + rel_z*w_1_t_33 - qdd_1_t_5*w_1_t_36 - rel_y*w_1_t_32)
+        )
+        qdd_1_t_7 = (
+        inv_w_1_t_69*(qdd_1_t_2*w_1_t_17 + qdd_1_t_3*w_1_t_28 + qdd_1_t_5*w_1_t_21 +
+            rel_y*w_1_t_16 - qdd_1_t_4*w_1_t_25 - qdd_1_t_6*w_1_t_18)
+        )
+        ok = (
+        ok & m.every((abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE * size) &
+            (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
+            (abs(w_1_t_82) > _TOLERANCE * size))
+        )
+        out_qdd[[0, 5, 10, 15, 20, 25][leg]] = -qdd_1_t_5
+        out_qdd[[1, 6, 11, 16, 21, 26][leg]] = qdd_1_t_4
+        out_qdd[[2, 7, 12, 17, 22, 27][leg]] = qdd_1_t_3
+        out_qdd[[3, 8, 13, 18, 23, 28][leg]] = qdd_1_t_6
+        out_qdd[[4, 9, 14, 19, 24, 29][leg]] = qdd_1_t_7
+    return ok, (out_qdd,)
 
 
 # legs: 5502 mul, 4050 add, 30 div, 30 sqrt, 60 trig
-def _legs_before(c, X, V, A, q, f):
+def _run_legs(m, X, V, A, q):
+    sqrt = m.sqrt
+    sin = m.sin
+    cos = m.cos
+    shared, legs = m.constants("legs")
+    gravity_x, gravity_y, gravity_z = shared
     X_3 = X[3]
     X_4 = X[4]
     X_5 = X[5]
@@ -7242,6 +7986,11 @@ def _legs_before(c, X, V, A, q, f):
     A_3 = A[3]
     A_4 = A[4]
     A_5 = A[5]
+    q_1 = q[1]
+    q_2 = q[2]
+    q_3 = q[3]
+    q_4 = q[4]
+    q_5 = q[5]
     # X: named entries
     quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6
     quaternion_scale = 2.0/quaternion_norm2
@@ -7280,883 +8029,909 @@ def _legs_before(c, X, V, A, q, f):
     alpha_x = A_3
     alpha_y = A_4
     alpha_z = A_5
-    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    return (
-    ok, (R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y, t_dot_z, omega_x,
-        omega_y, omega_z, t_ddot_x, t_ddot_y, t_ddot_z, alpha_x, alpha_y, alpha_z,), (),
-    )
-
-
-def _legs_rrrrrr(c, k, x, s, f):
-    sqrt = f.sqrt
-    sin = f.sin
-    cos = f.cos
-    gravity_x, gravity_y, gravity_z = c
-    (
-    J_1_xx, J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, J_4_xy, J_4_xz, J_4_yz, J_5_xy,
-        J_5_xz, J_5_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz,
-        Sigma_4_xx, Sigma_4_yy, Sigma_4_zz, Sigma_5_xx, Sigma_5_yy, Sigma_5_zz, g_r0_x, g_r0_y,
-        g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, h_4_x, h_4_y, h_4_z,
-        h_5_x, h_5_y, h_5_z, rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz,
-        rrrrrr_base_frame_yx, rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx,
-        rrrrrr_base_frame_zy, rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x,
-        rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x, rrrrrr_link3_mass,
-        rrrrrr_link4_mass, rrrrrr_link5_mass, rrrrrr_platform_joint_axis_platform_x,
-        rrrrrr_platform_joint_axis_platform_y, rrrrrr_platform_joint_axis_platform_z,
-        rrrrrr_platform_joint_offset_x, rrrrrr_platform_point_x, rrrrrr_platform_point_y,
-        rrrrrr_platform_point_z, size, size_t,
-    ) = k
-    q_1, q_2, q_3, q_4, q_5 = x
-    (
-    R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y, t_dot_z, omega_x,
-        omega_y, omega_z, t_ddot_x, t_ddot_y, t_ddot_z, alpha_x, alpha_y, alpha_z,
-    ) = s
-    # (rrrrrr-K10) cosine of the angle of joint 5 from its reference direction
-    c_5_t = sin(q_5)
-    # (rrrrrr-K11) sine of the angle of joint 5 from its reference direction
-    s_5 = cos(q_5)
-    # (rrrrrr-V2) from joint 4 to the connection point, along the links
-    r_4_t = c_5_t*rrrrrr_platform_joint_offset_x
-    r_4_z = rrrrrr_joint5_offset_x + rrrrrr_platform_joint_offset_x*s_5
-    # (rrrrrr-K8) cosine of the angle of joint 4 from its reference direction
-    c_4_t = sin(q_4)
-    # (rrrrrr-K9) sine of the angle of joint 4 from its reference direction
-    s_4 = cos(q_4)
-    # (rrrrrr-V2) from joint 4 to the connection point, along the links
-    r_4_t_2 = r_4_t*s_4
-    r_4_t_3 = c_4_t*r_4_t
-    # (rrrrrr-V3) from joint 3 to the connection point, along the links
-    r_3_x = r_4_z + rrrrrr_joint4_offset_x
-    # (rrrrrr-K6) cosine of the angle of joint 3 from its reference direction
-    c_3 = cos(q_3)
-    # (rrrrrr-K7) sine of the angle of joint 3 from its reference direction
-    s_3 = sin(q_3)
-    # (rrrrrr-V3) from joint 3 to the connection point, along the links
-    r_3_r0_y = c_3*r_4_t_2 + r_3_x*s_3
-    # (rrrrrr-V4) from joint 2 to the connection point, along the links
-    r_2_x = rrrrrr_joint3_offset_x + c_3*r_3_x - r_4_t_2*s_3
-    # (rrrrrr-K4) cosine of the angle of joint 2 from its reference direction
-    c_2_t = sin(q_2)
-    # (rrrrrr-K5) sine of the angle of joint 2 from its reference direction
-    s_2 = cos(q_2)
-    # (rrrrrr-V4) from joint 2 to the connection point, along the links
-    r_2_r0_x = -c_2_t*r_2_x - r_3_r0_y*s_2
-    # (rrrrrr-V5) from joint 1 to the connection point, along the links
-    r_1_z = rrrrrr_joint2_offset_x + r_2_x*s_2 - c_2_t*r_3_r0_y
-    # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-    e_1_r2_x = c_3*s_2 - c_2_t*s_3
-    e_1_r2_y = -c_2_t*c_3 - s_2*s_3
-    v_1_t = c_4_t*e_1_r2_y
-    v_1_t_2 = e_1_r2_y*s_4
-    e_1_r6_x = c_5_t*v_1_t_2 + e_1_r2_x*s_5
-    e_1_r6_y = s_5*v_1_t_2 - c_5_t*e_1_r2_x
-    # (rrrrrr-V5) from joint 1 to the connection point, along the links
-    r_1_r1_x = r_1_z*s_2 - c_2_t*r_2_r0_x
-    r_1_r1_y = -c_2_t*r_1_z - r_2_r0_x*s_2
-    r_1_r2_x = c_3*r_1_r1_x + r_1_r1_y*s_3
-    r_1_r2_y = c_3*r_1_r1_y - r_1_r1_x*s_3
-    r_1_t = r_4_t_3*s_4
-    r_1_r4_x = r_1_t - c_4_t*r_1_r2_y
-    r_1_t_2 = c_4_t*r_4_t_3
-    r_1_r4_y = -r_1_t_2 - r_1_r2_y*s_4
-    r_1_r6_x = r_1_r2_x*s_5 - c_5_t*r_1_r4_y
-    r_1_r6_y = -c_5_t*r_1_r2_x - r_1_r4_y*s_5
-    # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-    v_1_x = e_1_r6_y*r_1_r4_x + r_1_r6_y*v_1_t
-    v_1_y = -e_1_r6_x*r_1_r4_x - r_1_r6_x*v_1_t
-    v_1_z = e_1_r6_x*r_1_r6_y - e_1_r6_y*r_1_r6_x
-    # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-    v_2_t = c_4_t*c_5_t
-    v_2_t_2 = c_4_t*s_5
-    # (rrrrrr-V4) from joint 2 to the connection point, along the links
-    r_2_r0_x_2 = c_3*r_2_x + r_3_r0_y*s_3
-    r_2_r0_y = c_3*r_3_r0_y - r_2_x*s_3
-    r_2_r2_x = r_1_t - c_4_t*r_2_r0_y
-    r_2_r2_y = -r_1_t_2 - r_2_r0_y*s_4
-    r_2_r4_x = r_2_r0_x_2*s_5 - c_5_t*r_2_r2_y
-    r_2_r4_y = -c_5_t*r_2_r0_x_2 - r_2_r2_y*s_5
-    # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-    v_2_x = r_2_r2_x*v_2_t_2 - r_2_r4_y*s_4
-    v_2_y = r_2_r4_x*s_4 - r_2_r2_x*v_2_t
-    v_2_z = r_2_r4_y*v_2_t - r_2_r4_x*v_2_t_2
-    # (rrrrrr-V3) from joint 3 to the connection point, along the links
-    r_3_r1_x = r_1_t - c_4_t*r_4_t_2
-    r_3_r1_y = -r_1_t_2 - r_4_t_2*s_4
-    r_3_r3_x = r_3_x*s_5 - c_5_t*r_3_r1_y
-    r_3_r3_y = -c_5_t*r_3_x - r_3_r1_y*s_5
-    # (rrrrrr-V8) velocity of the connection point per rate of joint 3
-    v_3_x = r_3_r1_x*v_2_t_2 - r_3_r3_y*s_4
-    v_3_y = r_3_r3_x*s_4 - r_3_r1_x*v_2_t
-    v_3_z = r_3_r3_y*v_2_t - r_3_r3_x*v_2_t_2
-    # (rrrrrr-V9) velocity of the connection point per rate of joint 4
-    v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t = c_4_t*s_3
-    w_1_t_2 = c_3*c_4_t
-    axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_2 - c_2_t*w_1_t
-    axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_2 + s_2*w_1_t
-    # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
-    c_1_t = sin(q_1)
-    # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
-    s_1 = cos(q_1)
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    axis_z_rrrrrr_axes5_r7_x = -axis_z_rrrrrr_axes5_r5_x*s_1 - c_1_t*s_4
-    axis_z_rrrrrr_axes5_r7_y = s_1*s_4 - axis_z_rrrrrr_axes5_r5_x*c_1_t
-    axis_z_rrrrrr_axes5_in_base_x = (
-    axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx + axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy
-        + axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
-    )
-    axis_z_rrrrrr_axes5_in_base_y = (
-    axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx + axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy
-        + axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
-    )
-    axis_z_rrrrrr_axes5_in_base_z = (
-    axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx + axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy
-        + axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
-    )
-    w_1_t_3 = s_4*s_5
-    axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_3
-    axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_3 - c_5_t*s_3
-    axis_y_rrrrrr_axes5_r5_x = -axis_y_rrrrrr_axes5_r4_x*c_2_t - axis_y_rrrrrr_axes5_r4_y*s_2
-    axis_y_rrrrrr_axes5_r5_y = axis_y_rrrrrr_axes5_r4_x*s_2 - axis_y_rrrrrr_axes5_r4_y*c_2_t
-    axis_y_rrrrrr_axes5_r7_x = -axis_y_rrrrrr_axes5_r5_x*s_1 - c_1_t*v_2_t_2
-    axis_y_rrrrrr_axes5_r7_y = s_1*v_2_t_2 - axis_y_rrrrrr_axes5_r5_x*c_1_t
-    axis_y_rrrrrr_axes5_in_base_x = (
-    axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx + axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy
-        + axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
-    )
-    axis_y_rrrrrr_axes5_in_base_y = (
-    axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx + axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy
-        + axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
-    )
-    axis_y_rrrrrr_axes5_in_base_z = (
-    axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx + axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy
-        + axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
-    )
-    axis_x_rrrrrr_axes5_x = (
-    axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_z -
-        axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_y
-    )
-    axis_x_rrrrrr_axes5_y = (
-    axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_x -
-        axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_z
-    )
-    axis_x_rrrrrr_axes5_z = (
-    axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_y -
-        axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_x
-    )
-    # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
-    end_p1_r0_x = (
-    rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xy + R_yx*rrrrrr_base_frame_yy +
-        R_zx*rrrrrr_base_frame_zy) +
-        rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xy +
-        R_yy*rrrrrr_base_frame_yy + R_zy*rrrrrr_base_frame_zy) +
-        rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xy +
-        R_yz*rrrrrr_base_frame_yy + R_zz*rrrrrr_base_frame_zy)
-    )
-    end_p1_r0_y = (
-    rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xz + R_yx*rrrrrr_base_frame_yz +
-        R_zx*rrrrrr_base_frame_zz) +
-        rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xz +
-        R_yy*rrrrrr_base_frame_yz + R_zy*rrrrrr_base_frame_zz) +
-        rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xz +
-        R_yz*rrrrrr_base_frame_yz + R_zz*rrrrrr_base_frame_zz)
-    )
-    end_p1_r0_z = (
-    rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xx + R_yx*rrrrrr_base_frame_yx +
-        R_zx*rrrrrr_base_frame_zx) +
-        rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xx +
-        R_yy*rrrrrr_base_frame_yx + R_zy*rrrrrr_base_frame_zx) +
-        rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xx +
-        R_yz*rrrrrr_base_frame_yx + R_zz*rrrrrr_base_frame_zx)
-    )
-    end_p1_r1_x = end_p1_r0_y*s_1 - c_1_t*end_p1_r0_x
-    end_p1_r1_y = -c_1_t*end_p1_r0_y - end_p1_r0_x*s_1
-    end_p1_r3_x = end_p1_r0_z*s_2 - c_2_t*end_p1_r1_y
-    end_p1_r3_y = -c_2_t*end_p1_r0_z - end_p1_r1_y*s_2
-    end_p1_r4_x = c_3*end_p1_r3_x + end_p1_r3_y*s_3
-    end_p1_r4_y = c_3*end_p1_r3_y - end_p1_r3_x*s_3
-    end_p1_r6_x = end_p1_r1_x*s_4 - c_4_t*end_p1_r4_y
-    end_p1_r6_y = -c_4_t*end_p1_r1_x - end_p1_r4_y*s_4
-    end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
-    end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_4 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
-    w_1_t_5 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
-    w_1_t_6 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
-    w_1_t_7 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
-    w_1_t_8 = size*w_1_t_4
-    w_1_t_9 = size*w_1_t_6
-    w_1_t_10 = size*w_1_t_5
-    w_1_t_11 = size*w_1_t_7
-    w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
-    w_1_t_13 = c_5_t*end_p1_r6_x*size
-    w_1_t_14 = end_p1_r8_y*size
-    w_1_t_15 = sqrt(size_t + w_1_t_14*w_1_t_14)
-    inv_w_1_t_69 = 1.0/w_1_t_15
-    w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
-    w_1_t_17 = inv_w_1_t_69*w_1_t_14
-    w_1_t_18 = w_1_t_13*w_1_t_17
-    w_1_t_19 = w_1_t_16*w_1_t_18
-    w_1_t_20 = w_1_t_13 - w_1_t_17*w_1_t_18
-    w_1_t_21 = v_1_y*w_1_t_16 - w_1_t_17*w_1_t_9
-    w_1_t_22 = v_1_y - w_1_t_16*w_1_t_21
-    w_1_t_23 = w_1_t_9 + w_1_t_17*w_1_t_21
-    w_1_t_24 = w_1_t_11*w_1_t_17
-    w_1_t_25 = v_2_y*w_1_t_16 - w_1_t_24
-    w_1_t_26 = v_2_y - w_1_t_16*w_1_t_25
-    w_1_t_27 = w_1_t_11 + w_1_t_17*w_1_t_25
-    w_1_t_28 = w_1_t_24 - v_3_y*w_1_t_16
-    w_1_t_29 = v_3_y + w_1_t_16*w_1_t_28
-    w_1_t_30 = w_1_t_11 - w_1_t_17*w_1_t_28
-    w_1_t_31 = sqrt(v_4_z*v_4_z + w_1_t_12*w_1_t_12 + w_1_t_19*w_1_t_19 + w_1_t_20*w_1_t_20)
-    inv_w_1_t_101 = 1.0/w_1_t_31
-    w_1_t_32 = inv_w_1_t_101*w_1_t_19
-    w_1_t_33 = inv_w_1_t_101*v_4_z
-    w_1_t_34 = inv_w_1_t_101*w_1_t_12
-    w_1_t_35 = inv_w_1_t_101*w_1_t_20
-    w_1_t_36 = w_1_t_22*w_1_t_32 + w_1_t_23*w_1_t_35 + w_1_t_34*w_1_t_8 - v_1_z*w_1_t_33
-    w_1_t_37 = w_1_t_32*w_1_t_36 - w_1_t_22
-    w_1_t_38 = v_1_z + w_1_t_33*w_1_t_36
-    w_1_t_39 = w_1_t_34*w_1_t_36 - w_1_t_8
-    w_1_t_40 = w_1_t_35*w_1_t_36 - w_1_t_23
-    w_1_t_41 = w_1_t_10*w_1_t_34
-    w_1_t_42 = w_1_t_41 + w_1_t_26*w_1_t_32 + w_1_t_27*w_1_t_35 - v_2_z*w_1_t_33
-    w_1_t_43 = w_1_t_32*w_1_t_42 - w_1_t_26
-    w_1_t_44 = v_2_z + w_1_t_33*w_1_t_42
-    w_1_t_45 = w_1_t_34*w_1_t_42 - w_1_t_10
-    w_1_t_46 = w_1_t_35*w_1_t_42 - w_1_t_27
-    w_1_t_47 = w_1_t_41 + w_1_t_29*w_1_t_32 + w_1_t_30*w_1_t_35 - v_3_z*w_1_t_33
-    w_1_t_48 = w_1_t_32*w_1_t_47 - w_1_t_29
-    w_1_t_49 = v_3_z + w_1_t_33*w_1_t_47
-    w_1_t_50 = w_1_t_34*w_1_t_47 - w_1_t_10
-    w_1_t_51 = w_1_t_35*w_1_t_47 - w_1_t_30
-    w_1_t_52 = (
-    sqrt(v_1_x*v_1_x + w_1_t_37*w_1_t_37 + w_1_t_38*w_1_t_38 + w_1_t_39*w_1_t_39 +
-        w_1_t_40*w_1_t_40)
-    )
-    inv_w_1_t_150 = 1.0/w_1_t_52
-    w_1_t_53 = inv_w_1_t_150*v_1_x
-    w_1_t_54 = inv_w_1_t_150*w_1_t_37
-    w_1_t_55 = inv_w_1_t_150*w_1_t_38
-    w_1_t_56 = inv_w_1_t_150*w_1_t_39
-    w_1_t_57 = inv_w_1_t_150*w_1_t_40
-    w_1_t_58 = (
-    v_2_x*w_1_t_53 + w_1_t_43*w_1_t_54 + w_1_t_44*w_1_t_55 + w_1_t_45*w_1_t_56 + w_1_t_46*w_1_t_57
-    )
-    w_1_t_59 = v_2_x - w_1_t_53*w_1_t_58
-    w_1_t_60 = w_1_t_43 - w_1_t_54*w_1_t_58
-    w_1_t_61 = w_1_t_44 - w_1_t_55*w_1_t_58
-    w_1_t_62 = w_1_t_45 - w_1_t_56*w_1_t_58
-    w_1_t_63 = w_1_t_46 - w_1_t_57*w_1_t_58
-    w_1_t_64 = (
-    v_3_x*w_1_t_53 + w_1_t_48*w_1_t_54 + w_1_t_49*w_1_t_55 + w_1_t_50*w_1_t_56 + w_1_t_51*w_1_t_57
-    )
-    w_1_t_65 = v_3_x - w_1_t_53*w_1_t_64
-    w_1_t_66 = w_1_t_48 - w_1_t_54*w_1_t_64
-    w_1_t_67 = w_1_t_49 - w_1_t_55*w_1_t_64
-    w_1_t_68 = w_1_t_50 - w_1_t_56*w_1_t_64
-    w_1_t_69 = w_1_t_51 - w_1_t_57*w_1_t_64
-    w_1_t_70 = (
-    sqrt(w_1_t_59*w_1_t_59 + w_1_t_60*w_1_t_60 + w_1_t_61*w_1_t_61 + w_1_t_62*w_1_t_62 +
-        w_1_t_63*w_1_t_63)
-    )
-    inv_w_1_t_194 = 1.0/w_1_t_70
-    w_1_t_71 = inv_w_1_t_194*w_1_t_59
-    w_1_t_72 = inv_w_1_t_194*w_1_t_60
-    w_1_t_73 = inv_w_1_t_194*w_1_t_61
-    w_1_t_74 = inv_w_1_t_194*w_1_t_62
-    w_1_t_75 = inv_w_1_t_194*w_1_t_63
-    w_1_t_76 = (
-    w_1_t_65*w_1_t_71 + w_1_t_66*w_1_t_72 + w_1_t_67*w_1_t_73 + w_1_t_68*w_1_t_74 +
-        w_1_t_69*w_1_t_75
-    )
-    w_1_t_77 = w_1_t_65 - w_1_t_71*w_1_t_76
-    w_1_t_78 = w_1_t_66 - w_1_t_72*w_1_t_76
-    w_1_t_79 = w_1_t_67 - w_1_t_73*w_1_t_76
-    w_1_t_80 = w_1_t_68 - w_1_t_74*w_1_t_76
-    w_1_t_81 = w_1_t_69 - w_1_t_75*w_1_t_76
-    w_1_t_82 = (
-    sqrt(w_1_t_77*w_1_t_77 + w_1_t_78*w_1_t_78 + w_1_t_79*w_1_t_79 + w_1_t_80*w_1_t_80 +
-        w_1_t_81*w_1_t_81)
-    )
-    inv_w_1_t_222 = 1.0/w_1_t_82
-    w_1_t_83 = inv_w_1_t_222*w_1_t_77
-    w_1_t_84 = inv_w_1_t_222*w_1_t_78
-    w_1_t_85 = inv_w_1_t_222*w_1_t_79
-    w_1_t_86 = inv_w_1_t_222*w_1_t_80
-    w_1_t_87 = inv_w_1_t_222*w_1_t_81
-    # (rrrrrr-V16) force part of reciprocal wrench 2
-    w_2_t = inv_w_1_t_194*inv_w_1_t_222*w_1_t_76
-    w_2_t_2 = inv_w_1_t_194*w_1_t_71 - w_1_t_83*w_2_t
-    w_2_t_3 = inv_w_1_t_194*w_1_t_72 - w_1_t_84*w_2_t
-    w_2_t_4 = w_1_t_85*w_2_t - inv_w_1_t_194*w_1_t_73
-    w_2_t_5 = size*(inv_w_1_t_194*w_1_t_74 - w_1_t_86*w_2_t)
-    w_2_t_6 = size*(inv_w_1_t_194*w_1_t_75 - w_1_t_87*w_2_t)
-    # (rrrrrr-V29) moment part of reciprocal wrench 2
-    o_2_t = end_p1_r8_y*w_2_t_5
-    o_2_t_2 = end_p1_r8_y*w_2_t_6
-    o_2_y = end_p1_r8_x*w_2_t_5 - end_p1_r6_x*w_2_t_6
-    # (M2) coupling block of M
-    q_in_base_x = (
-    R_xx*rrrrrr_platform_point_x + R_xy*rrrrrr_platform_point_y + R_xz*rrrrrr_platform_point_z
-    )
-    q_in_base_y = (
-    R_yx*rrrrrr_platform_point_x + R_yy*rrrrrr_platform_point_y + R_yz*rrrrrr_platform_point_z
-    )
-    q_in_base_z = (
-    R_zx*rrrrrr_platform_point_x + R_zy*rrrrrr_platform_point_y + R_zz*rrrrrr_platform_point_z
-    )
-    # (rrrrrr-V1) velocity of the connection point
-    S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-    S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-    S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-    S_dot_x = S_dot_t + t_dot_x
-    S_dot_y = S_dot_t_2 + t_dot_y
-    S_dot_z = S_dot_t_3 + t_dot_z
-    S_dot_tip_x = (
-    S_dot_x*axis_x_rrrrrr_axes5_x + S_dot_y*axis_x_rrrrrr_axes5_y + S_dot_z*axis_x_rrrrrr_axes5_z
-    )
-    S_dot_tip_y = (
-    S_dot_x*axis_y_rrrrrr_axes5_in_base_x + S_dot_y*axis_y_rrrrrr_axes5_in_base_y +
-        S_dot_z*axis_y_rrrrrr_axes5_in_base_z
-    )
-    S_dot_tip_z = (
-    S_dot_x*axis_z_rrrrrr_axes5_in_base_x + S_dot_y*axis_z_rrrrrr_axes5_in_base_y +
-        S_dot_z*axis_z_rrrrrr_axes5_in_base_z
-    )
-    # (rrrrrr-A14) rate of moment direction 1
-    omega_tip_x = (
-    axis_x_rrrrrr_axes5_x*omega_x + axis_x_rrrrrr_axes5_y*omega_y + axis_x_rrrrrr_axes5_z*omega_z
-    )
-    omega_tip_y = (
-    axis_y_rrrrrr_axes5_in_base_x*omega_x + axis_y_rrrrrr_axes5_in_base_y*omega_y +
-        axis_y_rrrrrr_axes5_in_base_z*omega_z
-    )
-    omega_tip_z = (
-    axis_z_rrrrrr_axes5_in_base_x*omega_x + axis_z_rrrrrr_axes5_in_base_y*omega_y +
-        axis_z_rrrrrr_axes5_in_base_z*omega_z
-    )
-    nd_m1_t = end_p1_r6_x*omega_tip_y - end_p1_r8_y*omega_tip_z
-    nd_m1_t_2 = end_p1_r8_x*omega_tip_z - end_p1_r6_x*omega_tip_x
-    nd_m1_t_3 = end_p1_r8_y*omega_tip_x - end_p1_r8_x*omega_tip_y
-    # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-    bias_t = rrrrrr_joint2_offset_x*s_2
-    bias_t_2 = c_2_t*rrrrrr_joint2_offset_x
-    d_2_r2_x = bias_t*c_3 - bias_t_2*s_3
-    d_2_r2_y = -bias_t*s_3 - bias_t_2*c_3
-    bias_t_3 = c_4_t*d_2_r2_y
-    bias_t_4 = d_2_r2_y*s_4
-    d_2_r6_x = bias_t_4*c_5_t + d_2_r2_x*s_5
-    d_2_r6_y = bias_t_4*s_5 - c_5_t*d_2_r2_x
-    bias_t_5 = c_3*rrrrrr_joint3_offset_x
-    bias_t_6 = rrrrrr_joint3_offset_x*s_3
-    bias_t_7 = bias_t_6*c_4_t
-    bias_t_8 = bias_t_6*s_4
-    d_3_r4_x = bias_t_5*s_5 - bias_t_8*c_5_t
-    d_3_r4_y = -bias_t_5*c_5_t - bias_t_8*s_5
-    bias_t_9 = rrrrrr_joint4_offset_x*s_5
-    bias_t_10 = c_5_t*rrrrrr_joint4_offset_x
-    bias_t_11 = rrrrrr_joint5_offset_x*s_5
-    bias_t_12 = c_5_t*rrrrrr_joint5_offset_x
-    # (rrrrrr-N16) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
-    g_r1_x = g_r0_y*s_1 - c_1_t*g_r0_x
-    g_r1_y = -c_1_t*g_r0_y - g_r0_x*s_1
-    g_r3_x = g_r0_z*s_2 - c_2_t*g_r1_y
-    g_r3_y = -c_2_t*g_r0_z - g_r1_y*s_2
-    g_r4_x = c_3*g_r3_x + g_r3_y*s_3
-    g_r4_y = c_3*g_r3_y - g_r3_x*s_3
-    # (rrrrrr-V16) force part of reciprocal wrench 2
-    w_2_in_base_x = (
-    axis_x_rrrrrr_axes5_x*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_x*w_2_t_3 -
-        axis_z_rrrrrr_axes5_in_base_x*w_2_t_4
-    )
-    w_2_in_base_y = (
-    axis_x_rrrrrr_axes5_y*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_y*w_2_t_3 -
-        axis_z_rrrrrr_axes5_in_base_y*w_2_t_4
-    )
-    w_2_in_base_z = (
-    axis_x_rrrrrr_axes5_z*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_z*w_2_t_3 -
-        axis_z_rrrrrr_axes5_in_base_z*w_2_t_4
-    )
-    # (rrrrrr-V35) rate of joint 1
-    qd_1_t = nd_m1_t_3*size
-    qd_1_t_2 = nd_m1_t*size
-    qd_1_t_3 = (
-    inv_w_1_t_222*(S_dot_tip_y*w_1_t_84 + qd_1_t*w_1_t_86 + qd_1_t_2*w_1_t_87 -
-        S_dot_tip_x*w_1_t_83 - S_dot_tip_z*w_1_t_85)
-    )
-    qd_1_t_4 = (
-    inv_w_1_t_194*(S_dot_tip_y*w_1_t_72 + qd_1_t*w_1_t_74 + qd_1_t_2*w_1_t_75 -
-        S_dot_tip_x*w_1_t_71 - S_dot_tip_z*w_1_t_73 - qd_1_t_3*w_1_t_76)
-    )
-    qd_1_t_5 = (
-    inv_w_1_t_150*(S_dot_tip_x*w_1_t_53 + S_dot_tip_z*w_1_t_55 + qd_1_t_3*w_1_t_64 +
-        qd_1_t_4*w_1_t_58 - S_dot_tip_y*w_1_t_54 - qd_1_t*w_1_t_56 - qd_1_t_2*w_1_t_57)
-    )
-    qd_1_t_6 = (
-    inv_w_1_t_101*(S_dot_tip_y*w_1_t_32 + qd_1_t*w_1_t_34 + qd_1_t_2*w_1_t_35 + qd_1_t_3*w_1_t_47
-        + qd_1_t_4*w_1_t_42 - S_dot_tip_z*w_1_t_33 - qd_1_t_5*w_1_t_36)
-    )
-    qd_1_t_7 = (
-    inv_w_1_t_69*(S_dot_tip_y*w_1_t_16 + qd_1_t_4*w_1_t_25 + qd_1_t_6*w_1_t_18 - qd_1_t_2*w_1_t_17
-        - qd_1_t_3*w_1_t_28 - qd_1_t_5*w_1_t_21)
-    )
-    # (rrrrrr-V40) angular velocity of link 1
-    omega_1_t = qd_1_t_5*s_2
-    omega_1_t_2 = c_2_t*qd_1_t_5
-    # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_x = omega_1_t_2*qd_1_t_4
-    zeta_2_y = omega_1_t*qd_1_t_4
-    # (rrrrrr-V42) angular velocity of link 2
-    omega_2_r0_x = c_3*omega_1_t - omega_1_t_2*s_3
-    omega_2_r0_y = -c_3*omega_1_t_2 - omega_1_t*s_3
-    # (rrrrrr-A5) angular acceleration of link 3 from the turning of axis 3
-    zeta_3_x = omega_2_r0_y*qd_1_t_3
-    zeta_3_y = omega_2_r0_x*qd_1_t_3
-    # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_r0_x = c_3*zeta_2_x + s_3*zeta_2_y
-    zeta_2_r0_y = c_3*zeta_2_y - s_3*zeta_2_x
-    # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
-    beta_3_x = zeta_2_r0_x - zeta_3_x
-    beta_3_y = zeta_2_r0_y + zeta_3_y
-    # (rrrrrr-V44) angular velocity of link 3
-    omega_3_z = -qd_1_t_3 - qd_1_t_4
-    omega_3_r1_x = omega_3_z*s_4 - c_4_t*omega_2_r0_y
-    omega_3_r1_y = -c_4_t*omega_3_z - omega_2_r0_y*s_4
-    # (rrrrrr-A7) angular acceleration of link 4 from the turning of axis 4
-    zeta_4_x = omega_3_r1_y*qd_1_t_6
-    zeta_4_y = omega_3_r1_x*qd_1_t_6
-    # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
-    beta_3_t = beta_3_y*c_4_t
-    beta_3_t_2 = beta_3_y*s_4
-    # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
-    beta_4_x = -beta_3_t - zeta_4_x
-    beta_4_y = zeta_4_y - beta_3_t_2
-    # (rrrrrr-V46) angular velocity of link 4
-    omega_4_z = omega_2_r0_x - qd_1_t_6
-    omega_4_t = c_5_t*omega_3_r1_y
-    omega_4_r1_x = omega_4_z*s_5 - omega_4_t
-    omega_4_t_2 = omega_3_r1_y*s_5
-    omega_4_r1_y = -omega_4_t_2 - c_5_t*omega_4_z
-    # (rrrrrr-A9) angular acceleration of link 5 from the turning of axis 5
-    zeta_5_x = omega_4_r1_y*qd_1_t_7
-    zeta_5_y = omega_4_r1_x*qd_1_t_7
-    # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
-    beta_4_t = beta_3_x*s_5
-    beta_4_r1_x = beta_4_t - beta_4_y*c_5_t
-    beta_4_t_2 = beta_3_x*c_5_t
-    beta_4_r1_y = -beta_4_t_2 - beta_4_y*s_5
-    # (rrrrrr-A10) angular acceleration of link 5 at zero joint accelerations
-    beta_5_x = beta_4_r1_x + zeta_5_x
-    beta_5_y = beta_4_r1_y - zeta_5_y
-    # (rrrrrr-V48) angular velocity of link 5
-    omega_5_z = omega_3_r1_x + qd_1_t_7
-    # (rrrrrr-A14) rate of moment direction 1
-    nd_m1_t_4 = end_p1_r8_y*omega_4_r1_y
-    nd_m1_x = -nd_m1_t_2 - end_p1_r6_x*omega_4_r1_x
-    nd_m1_y = nd_m1_t - end_p1_r6_x*omega_4_r1_y
-    # (rrrrrr-A15) bias of the angular acceleration along moment direction 1
-    nu_1_t = beta_5_x*end_p1_r8_y - beta_5_y*end_p1_r8_x
-    nu_1_t_2 = omega_4_r1_x - omega_tip_x
-    nu_1_t_3 = omega_4_r1_y - omega_tip_y
-    nu_1_t_4 = omega_5_z - omega_tip_z
-    nu_1_t_5 = (
-    nd_m1_x*nu_1_t_2 + nd_m1_y*nu_1_t_3 + nu_1_t_4*(nd_m1_t_4 + end_p1_r8_x*omega_4_r1_x)
-    )
-    nu_1 = nu_1_t - nu_1_t_5
-    # (rrrrrr-A18) acceleration with which the joints turn along moment direction 1
-    alpha_tip_y = (
-    alpha_x*axis_y_rrrrrr_axes5_in_base_x + alpha_y*axis_y_rrrrrr_axes5_in_base_y +
-        alpha_z*axis_y_rrrrrr_axes5_in_base_z
-    )
-    etad_1_t = (
-    end_p1_r8_y*(alpha_x*axis_x_rrrrrr_axes5_x + alpha_y*axis_x_rrrrrr_axes5_y +
-        alpha_z*axis_x_rrrrrr_axes5_z) - alpha_tip_y*end_p1_r8_x
-    )
-    etad_1 = nu_1 - etad_1_t
-    # (rrrrrr-A16) rate of moment direction 2
-    nd_m2_y = -nd_m1_t_3 - end_p1_r8_x*omega_4_r1_y
-    nd_m2_z = nd_m1_t_2 - end_p1_r8_x*omega_5_z
-    # (rrrrrr-A17) bias of the angular acceleration along moment direction 2
-    nu_2_t = beta_5_y*end_p1_r6_x - beta_4_x*end_p1_r8_y
-    nu_2_t_2 = nd_m2_y*nu_1_t_3 + nd_m2_z*nu_1_t_4 + nu_1_t_2*(nd_m1_t_4 + end_p1_r6_x*omega_5_z)
-    nu_2 = nu_2_t - nu_2_t_2
-    # (rrrrrr-A19) acceleration with which the joints turn along moment direction 2
-    etad_2_t = (
-    alpha_tip_y*end_p1_r6_x - end_p1_r8_y*(alpha_x*axis_z_rrrrrr_axes5_in_base_x +
-        alpha_y*axis_z_rrrrrr_axes5_in_base_y + alpha_z*axis_z_rrrrrr_axes5_in_base_z)
-    )
-    etad_2 = nu_2 - etad_2_t
-    # (rrrrrr-A2) acceleration of the connection point without its centripetal part
-    a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-    a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-    a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-    # (rrrrrr-A3) acceleration of the connection point
-    S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-    S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-    S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-    # (rrrrrr-V43) centripetal tensor of link 2
-    W_2_t = omega_1_t*omega_1_t
-    W_2_t_2 = omega_1_t_2*omega_1_t_2
-    W_2_t_3 = qd_1_t_4*qd_1_t_4
-    W_2_xy = omega_1_t*omega_1_t_2
-    # (rrrrrr-V45) centripetal tensor of link 3
-    W_3_t = omega_2_r0_x*omega_2_r0_x
-    W_3_t_2 = omega_2_r0_y*omega_2_r0_y
-    W_3_t_3 = omega_3_z*omega_3_z
-    W_3_xx = W_3_t_2 + W_3_t_3
-    W_3_xy = omega_2_r0_x*omega_2_r0_y
-    W_3_xz = omega_2_r0_x*omega_3_z
-    W_3_yz = omega_2_r0_y*omega_3_z
-    # (rrrrrr-V47) centripetal tensor of link 4
-    W_4_t = omega_3_r1_x*omega_3_r1_x
-    W_4_t_2 = omega_3_r1_y*omega_3_r1_y
-    W_4_t_3 = omega_4_z*omega_4_z
-    W_4_xy = omega_3_r1_x*omega_3_r1_y
-    W_4_xz = omega_3_r1_x*omega_4_z
-    W_4_yz = omega_3_r1_y*omega_4_z
-    # (rrrrrr-V49) centripetal tensor of link 5
-    W_5_t = omega_4_r1_x*omega_4_r1_x
-    W_5_t_2 = omega_4_r1_y*omega_4_r1_y
-    W_5_t_3 = omega_5_z*omega_5_z
-    W_5_xx = W_5_t_2 + W_5_t_3
-    W_5_xy = omega_4_r1_x*omega_4_r1_y
-    W_5_xz = omega_4_r1_x*omega_5_z
-    W_5_yz = omega_4_r1_y*omega_5_z
-    # (rrrrrr-V40) angular velocity of link 1
-    omega_1_x = e_1_r6_x*qd_1_t_5
-    omega_1_y = e_1_r6_y*qd_1_t_5
-    omega_1_z = qd_1_t_5*v_1_t
-    # (rrrrrr-V41) centripetal tensor of link 1
-    W_1_t = omega_1_x*omega_1_x
-    W_1_t_2 = omega_1_y*omega_1_y
-    W_1_t_3 = omega_1_z*omega_1_z
-    W_1_xy = omega_1_x*omega_1_y
-    W_1_xz = omega_1_x*omega_1_z
-    W_1_yz = omega_1_y*omega_1_z
-    # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_t = c_4_t*zeta_2_r0_y
-    zeta_2_t_2 = s_4*zeta_2_r0_y
-    zeta_2_r4_x = c_5_t*zeta_2_t_2 + s_5*zeta_2_r0_x
-    zeta_2_r4_y = s_5*zeta_2_t_2 - c_5_t*zeta_2_r0_x
-    # (rrrrrr-V42) angular velocity of link 2
-    omega_2_x = omega_1_x - qd_1_t_4*v_2_t
-    omega_2_y = omega_1_y - qd_1_t_4*v_2_t_2
-    omega_2_z = -omega_1_z - qd_1_t_4*s_4
-    # (rrrrrr-V43) centripetal tensor of link 2
-    W_2_t_4 = omega_2_x*omega_2_x
-    W_2_t_5 = omega_2_y*omega_2_y
-    W_2_t_6 = omega_2_z*omega_2_z
-    W_2_xy_2 = omega_2_x*omega_2_y
-    W_2_xz = omega_2_x*omega_2_z
-    W_2_yz = omega_2_y*omega_2_z
-    # (rrrrrr-V44) angular velocity of link 3
-    omega_3_r3_x = omega_2_r0_x*s_5 - omega_4_t
-    omega_3_r3_y = -omega_4_t_2 - c_5_t*omega_2_r0_x
-    # (rrrrrr-V45) centripetal tensor of link 3
-    W_3_xy_2 = omega_3_r3_x*omega_3_r3_y
-    # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-    bias_t_13 = W_5_xy + beta_4_x
-    bias_x = (
-    W_1_xy*d_2_r6_y + W_1_xz*bias_t_3 + bias_t_7*(W_2_xz + zeta_2_r4_y) + d_3_r4_y*(W_2_xy_2 +
-        zeta_2_t) - W_5_xx*rrrrrr_platform_joint_offset_x - bias_t_10*(W_3_xy_2 + beta_3_t) -
-        bias_t_11*(W_4_t + W_5_t_2) - bias_t_12*(W_5_xy - beta_4_x) - bias_t_9*(W_4_t +
-        omega_3_r3_y*omega_3_r3_y) - d_2_r6_x*(W_1_t_2 + W_1_t_3) - d_3_r4_x*(W_2_t_5 + W_2_t_6)
-    )
-    bias_y = (
-    W_1_xy*d_2_r6_x + W_1_yz*bias_t_3 + bias_t_10*(W_4_t + omega_3_r3_x*omega_3_r3_x) +
-        bias_t_11*bias_t_13 + bias_t_12*(W_4_t + W_5_t) + bias_t_13*rrrrrr_platform_joint_offset_x
-        + bias_t_7*(W_2_yz - zeta_2_r4_x) + bias_t_9*(W_3_xy_2 - beta_3_t) + d_3_r4_x*(W_2_xy_2 -
-        zeta_2_t) - d_2_r6_y*(W_1_t + W_1_t_3) - d_3_r4_y*(W_2_t_4 + W_2_t_6)
-    )
-    bias_z = (
-    bias_t_11*(omega_3_r1_x*omega_4_r1_x - beta_4_r1_y) + bias_t_3*(W_1_t + W_1_t_2) +
-        bias_t_9*(beta_4_t_2 + omega_3_r1_x*omega_3_r3_x - beta_3_t_2*s_5) + d_3_r4_x*(W_2_xz -
-        zeta_2_r4_y) + d_3_r4_y*(W_2_yz + zeta_2_r4_x) + rrrrrr_platform_joint_offset_x*(W_5_xz -
-        beta_5_y) - W_1_xz*d_2_r6_x - W_1_yz*d_2_r6_y - bias_t_10*(beta_4_t + beta_3_t_2*c_5_t +
-        omega_3_r1_x*omega_3_r3_y) - bias_t_12*(beta_4_r1_x + omega_3_r1_x*omega_4_r1_y) -
-        bias_t_7*(W_2_t_4 + W_2_t_5)
-    )
-    # (rrrrrr-A3) acceleration of the connection point
-    S_ddot_tip_x = (
-    S_ddot_x*axis_x_rrrrrr_axes5_x + S_ddot_y*axis_x_rrrrrr_axes5_y +
-        S_ddot_z*axis_x_rrrrrr_axes5_z
-    )
-    S_ddot_tip_y = (
-    S_ddot_x*axis_y_rrrrrr_axes5_in_base_x + S_ddot_y*axis_y_rrrrrr_axes5_in_base_y +
-        S_ddot_z*axis_y_rrrrrr_axes5_in_base_z
-    )
-    S_ddot_tip_z = (
-    S_ddot_x*axis_z_rrrrrr_axes5_in_base_x + S_ddot_y*axis_z_rrrrrr_axes5_in_base_y +
-        S_ddot_z*axis_z_rrrrrr_axes5_in_base_z
-    )
-    # (rrrrrr-A12) acceleration of the connection point left to the joint accelerations
-    rel_x = S_ddot_tip_x - bias_x
-    rel_y = S_ddot_tip_y - bias_y
-    rel_z = S_ddot_tip_z - bias_z
-    # (rrrrrr-A20) acceleration of joint 1
-    qdd_1_t = etad_1*size
-    qdd_1_t_2 = etad_2*size
-    qdd_1_t_3 = (
-    inv_w_1_t_222*(qdd_1_t*w_1_t_86 + qdd_1_t_2*w_1_t_87 + rel_x*w_1_t_83 + rel_z*w_1_t_85 -
-        rel_y*w_1_t_84)
-    )
-    qdd_1_t_4 = (
-    inv_w_1_t_194*(qdd_1_t*w_1_t_74 + qdd_1_t_2*w_1_t_75 + rel_x*w_1_t_71 + rel_z*w_1_t_73 -
-        qdd_1_t_3*w_1_t_76 - rel_y*w_1_t_72)
-    )
-    qdd_1_t_5 = (
-    inv_w_1_t_150*(qdd_1_t_3*w_1_t_64 + qdd_1_t_4*w_1_t_58 + rel_y*w_1_t_54 - qdd_1_t*w_1_t_56 -
-        qdd_1_t_2*w_1_t_57 - rel_x*w_1_t_53 - rel_z*w_1_t_55)
-    )
-    qdd_1_t_6 = (
-    inv_w_1_t_101*(qdd_1_t*w_1_t_34 + qdd_1_t_2*w_1_t_35 + qdd_1_t_3*w_1_t_47 + qdd_1_t_4*w_1_t_42
-        + rel_z*w_1_t_33 - qdd_1_t_5*w_1_t_36 - rel_y*w_1_t_32)
-    )
-    # (rrrrrr-N21) acceleration of the reference point of link 5, less gravity
-    acc_5_x = (
-    S_ddot_tip_x - axis_x_rrrrrr_axes5_x*gravity_x - axis_x_rrrrrr_axes5_y*gravity_y -
-        axis_x_rrrrrr_axes5_z*gravity_z
-    )
-    acc_5_y = (
-    S_ddot_tip_y - axis_y_rrrrrr_axes5_in_base_x*gravity_x -
-        axis_y_rrrrrr_axes5_in_base_y*gravity_y - axis_y_rrrrrr_axes5_in_base_z*gravity_z
-    )
-    acc_5_z = (
-    S_ddot_tip_z - axis_z_rrrrrr_axes5_in_base_x*gravity_x -
-        axis_z_rrrrrr_axes5_in_base_y*gravity_y - axis_z_rrrrrr_axes5_in_base_z*gravity_z
-    )
-    # (rrrrrr-A30) angular acceleration of link 1
-    alpha_1_t = qdd_1_t_5*s_2
-    alpha_1_t_2 = c_2_t*qdd_1_t_5
-    # (rrrrrr-A34) angular acceleration of link 2
-    alpha_2_x = zeta_2_x - alpha_1_t
-    alpha_2_y = alpha_1_t_2 + zeta_2_y
-    # (rrrrrr-A36) acceleration tensor of link 2
-    B_2_xy = -W_2_xy - qdd_1_t_4
-    B_2_yx = qdd_1_t_4 - W_2_xy
-    B_2_zx = -alpha_2_y - zeta_2_y
-    B_2_zy = alpha_2_x + zeta_2_x
-    # (rrrrrr-A54) acceleration of the origin of joint 3
-    a_o3_t = rrrrrr_joint3_offset_x*(W_2_t_2 + W_2_t_3)
-    a_o3_t_2 = B_2_yx*rrrrrr_joint3_offset_x
-    a_o3_t_3 = B_2_zx*rrrrrr_joint3_offset_x
-    # (rrrrrr-A38) angular acceleration of link 3
-    alpha_3_x = alpha_2_x*c_3 + alpha_2_y*s_3 - zeta_3_x
-    alpha_3_y = zeta_3_y + alpha_2_y*c_3 - alpha_2_x*s_3
-    alpha_3_z = qdd_1_t_3 + qdd_1_t_4
-    # (rrrrrr-A40) acceleration tensor of link 3
-    B_3_xy = W_3_xy - alpha_3_z
-    B_3_xz = W_3_xz + alpha_3_y
-    B_3_yx = W_3_xy + alpha_3_z
-    B_3_yz = W_3_yz - alpha_3_x
-    B_3_zx = W_3_xz - alpha_3_y
-    B_3_zy = W_3_yz + alpha_3_x
-    # (rrrrrr-A54) acceleration of the origin of joint 3
-    a_o3_r0_x = a_o3_t_2*s_3 - a_o3_t*c_3
-    a_o3_r0_y = a_o3_t*s_3 + a_o3_t_2*c_3
-    # (rrrrrr-A56) acceleration of the origin of joint 4
-    a_o4_x = a_o3_r0_x - W_3_xx*rrrrrr_joint4_offset_x
-    a_o4_y = a_o3_r0_y + B_3_yx*rrrrrr_joint4_offset_x
-    a_o4_z = a_o3_t_3 + B_3_zx*rrrrrr_joint4_offset_x
-    # (rrrrrr-N15) acceleration of the reference point of link 4, less gravity
-    acc_4_x = a_o4_z*s_4 + c_4_t*g_r4_y - a_o4_y*c_4_t - g_r1_x*s_4
-    acc_4_y = c_4_t*g_r1_x + g_r4_y*s_4 - a_o4_y*s_4 - a_o4_z*c_4_t
-    acc_4_z = a_o4_x - g_r4_x
-    # (rrrrrr-A42) angular acceleration of link 4
-    alpha_4_x = alpha_3_z*s_4 - zeta_4_x - alpha_3_y*c_4_t
-    alpha_4_y = zeta_4_y - alpha_3_y*s_4 - alpha_3_z*c_4_t
-    alpha_4_z = alpha_3_x + qdd_1_t_6
-    # (rrrrrr-A44) acceleration tensor of link 4
-    B_4_xy = W_4_xy - alpha_4_z
-    B_4_xz = W_4_xz + alpha_4_y
-    B_4_yx = W_4_xy + alpha_4_z
-    B_4_yz = W_4_yz - alpha_4_x
-    B_4_zx = W_4_xz - alpha_4_y
-    B_4_zy = W_4_yz + alpha_4_x
-    # (rrrrrr-N72) inertia moment of the links that turn with link 4, about their reference points
-    mu_4_x = (
-    B_4_yx*J_4_xz + B_4_zx*J_4_yz + B_4_zy*Sigma_4_yy - B_4_yz*Sigma_4_zz - J_4_xy*(W_4_t_2 -
-        W_4_t_3) - acc_4_y*h_4_x - acc_4_z*h_4_y
-    )
-    mu_4_y = (
-    B_4_xy*J_4_xy + B_4_xz*Sigma_4_zz + acc_4_x*h_4_x - B_4_zx*Sigma_4_xx - B_4_zy*J_4_yz -
-        J_4_xz*(W_4_t - W_4_t_3) - acc_4_z*h_4_z
-    )
-    mu_4_z = (
-    B_4_yx*Sigma_4_xx + acc_4_x*h_4_y + acc_4_y*h_4_z - B_4_xy*Sigma_4_yy - B_4_xz*J_4_xy -
-        B_4_yz*J_4_xz - J_4_yz*(W_4_t - W_4_t_2)
-    )
-    # (rrrrrr-A46) angular acceleration of link 5
-    alpha_5_x = zeta_5_x + alpha_4_z*s_5 - alpha_4_y*c_5_t
-    alpha_5_y = -zeta_5_y - alpha_4_y*s_5 - alpha_4_z*c_5_t
-    alpha_5_z = (
-    alpha_4_x + inv_w_1_t_69*(qdd_1_t_2*w_1_t_17 + qdd_1_t_3*w_1_t_28 + qdd_1_t_5*w_1_t_21 +
-        rel_y*w_1_t_16 - qdd_1_t_4*w_1_t_25 - qdd_1_t_6*w_1_t_18)
-    )
-    # (rrrrrr-A50) acceleration tensor of link 5
-    B_5_xy = W_5_xy - alpha_5_z
-    B_5_xz = W_5_xz + alpha_5_y
-    B_5_yx = W_5_xy + alpha_5_z
-    B_5_yz = W_5_yz - alpha_5_x
-    B_5_zx = W_5_xz - alpha_5_y
-    B_5_zy = W_5_yz + alpha_5_x
-    # (rrrrrr-N64) inertia moment of the links that turn with link 5, about their reference points
-    mu_5_x = (
-    B_5_yx*J_5_xz + B_5_zy*Sigma_5_yy + J_5_yz*(W_5_t_2 - W_5_t_3) + acc_5_z*h_5_y -
-        B_5_yz*Sigma_5_zz - B_5_zx*J_5_xy - acc_5_y*h_5_z
-    )
-    mu_5_y = (
-    B_5_xz*Sigma_5_zz + B_5_zy*J_5_xy + acc_5_x*h_5_z - B_5_xy*J_5_yz - B_5_zx*Sigma_5_xx -
-        J_5_xz*(W_5_t - W_5_t_3) - acc_5_z*h_5_x
-    )
-    mu_5_z = (
-    B_5_xz*J_5_yz + B_5_yx*Sigma_5_xx + J_5_xy*(W_5_t - W_5_t_2) + acc_5_y*h_5_x -
-        B_5_xy*Sigma_5_yy - B_5_yz*J_5_xz - acc_5_x*h_5_y
-    )
-    # (rrrrrr-N74) moment about joint 4 of the links from 4 outwards, the force at the connection point left out
-    N_4_x = mu_4_x + mu_5_z
-    N_4_y = mu_4_y - c_5_t*mu_5_x - mu_5_y*s_5
-    N_4_z = mu_4_z + mu_5_x*s_5 - c_5_t*mu_5_y
-    # (rrrrrr-N19) inertia force of link 4 less its weight
-    f_4_x = B_4_xz*h_4_x + acc_4_x*rrrrrr_link4_mass - B_4_xy*h_4_y - h_4_z*(W_4_t_2 + W_4_t_3)
-    f_4_y = B_4_yx*h_4_z + B_4_yz*h_4_x + acc_4_y*rrrrrr_link4_mass + h_4_y*(W_4_t + W_4_t_3)
-    f_4_z = B_4_zx*h_4_z + acc_4_z*rrrrrr_link4_mass - B_4_zy*h_4_y - h_4_x*(W_4_t + W_4_t_2)
-    # (rrrrrr-N9) acceleration of the reference point of link 3, less gravity
-    acc_3_x = a_o3_r0_x - g_r4_x
-    acc_3_y = a_o3_r0_y - g_r4_y
-    acc_3_z = a_o3_t_3 - g_r1_x
-    # (rrrrrr-N82) inertia moment of the links that turn with link 3, about their reference points
-    mu_3_x = (
-    B_3_yx*J_3_xz + B_3_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) + acc_3_z*h_3_y -
-        B_3_yz*Sigma_3_zz - B_3_zx*J_3_xy - acc_3_y*h_3_z
-    )
-    mu_3_y = (
-    B_3_xz*Sigma_3_zz + B_3_zy*J_3_xy + acc_3_x*h_3_z - B_3_xy*J_3_yz - B_3_zx*Sigma_3_xx -
-        J_3_xz*(W_3_t - W_3_t_3) - acc_3_z*h_3_x
-    )
-    mu_3_z = (
-    B_3_xz*J_3_yz + B_3_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + acc_3_y*h_3_x -
-        B_3_xy*Sigma_3_yy - B_3_yz*J_3_xz - acc_3_x*h_3_y
-    )
-    # (rrrrrr-N19) inertia force of link 4 less its weight
-    f_4_r0_x = -c_4_t*f_4_x - f_4_y*s_4
-    f_4_r0_y = f_4_x*s_4 - c_4_t*f_4_y
-    # (rrrrrr-N84) moment about joint 3 of the links from 3 outwards, the force at the connection point left out
-    N_3_x = N_4_z + mu_3_x
-    N_3_y = mu_3_y - N_4_x*c_4_t - N_4_y*s_4 - f_4_r0_y*rrrrrr_joint4_offset_x
-    N_3_z = mu_3_z + N_4_x*s_4 + f_4_r0_x*rrrrrr_joint4_offset_x - N_4_y*c_4_t
-    # (rrrrrr-N13) inertia force of link 3 less its weight
-    f_3_x = B_3_xy*h_3_y + B_3_xz*h_3_z + acc_3_x*rrrrrr_link3_mass - W_3_xx*h_3_x
-    f_3_y = B_3_yx*h_3_x + B_3_yz*h_3_z + acc_3_y*rrrrrr_link3_mass - h_3_y*(W_3_t + W_3_t_3)
-    f_3_z = B_3_zx*h_3_x + B_3_zy*h_3_y + acc_3_z*rrrrrr_link3_mass - h_3_z*(W_3_t + W_3_t_2)
-    # (rrrrrr-N86) inertia force of the links from 3 outwards, the last link left out
-    T_3_x = f_3_x + f_4_z
-    T_3_y = f_3_y + f_4_r0_x
-    T_3_z = f_3_z + f_4_r0_y
-    # (rrrrrr-N94) inertia moment of the links that turn with link 2, about their reference points
-    mu_2_x = (
-    B_2_yx*J_2_xz + B_2_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) + g_r3_y*h_2_z - B_2_zx*J_2_xy
-        - Sigma_2_zz*alpha_1_t - g_r1_x*h_2_y
-    )
-    mu_2_y = (
-    B_2_zy*J_2_xy + Sigma_2_zz*alpha_1_t_2 + g_r1_x*h_2_x - B_2_xy*J_2_yz - B_2_zx*Sigma_2_xx -
-        J_2_xz*(W_2_t - W_2_t_3) - g_r3_x*h_2_z
-    )
-    mu_2_z = (
-    B_2_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + J_2_yz*alpha_1_t_2 + g_r3_x*h_2_y -
-        B_2_xy*Sigma_2_yy - J_2_xz*alpha_1_t - g_r3_y*h_2_x
-    )
-    # (rrrrrr-N96) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-    N_2_x = mu_2_x + N_3_x*c_3 - N_3_y*s_3
-    N_2_y = mu_2_y + N_3_x*s_3 + N_3_y*c_3 - T_3_z*rrrrrr_joint3_offset_x
-    N_2_z = N_3_z + mu_2_z + rrrrrr_joint3_offset_x*(T_3_x*s_3 + T_3_y*c_3)
-    # (rrrrrr-N106) inertia moment of the links that turn with link 1, about their reference points
-    mu_1_z = -J_1_xx*qdd_1_t_5 - g_r1_x*h_1_y - g_r1_y*h_1_z
-    # (rrrrrr-N108) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-    N_1_z = mu_1_z + N_2_x*s_2 - N_2_y*c_2_t
-    # (rrrrrr-N114) force at the connection point that balances the leg's inertia and weight along all freedoms
-    G_t = inv_w_1_t_69*mu_5_z
-    G_t_2 = inv_w_1_t_101*(G_t*w_1_t_18 - N_4_z)
-    G_t_3 = inv_w_1_t_150*(G_t*w_1_t_21 + G_t_2*w_1_t_36 - N_1_z)
-    G_t_4 = inv_w_1_t_194*(G_t*w_1_t_25 + G_t_2*w_1_t_42 - N_2_z - G_t_3*w_1_t_58)
-    G_t_5 = (
-    inv_w_1_t_222*(N_3_z + G_t*w_1_t_28 + G_t_3*w_1_t_64 + G_t_4*w_1_t_76 - G_t_2*w_1_t_47)
-    )
-    G_t_6 = size*(G_t_2*w_1_t_34 + G_t_3*w_1_t_56 + G_t_4*w_1_t_74 - G_t_5*w_1_t_86)
-    G_t_7 = (
-    size*(G_t_2*w_1_t_35 + G_t_3*w_1_t_57 + G_t_4*w_1_t_75 - G_t*w_1_t_17 - G_t_5*w_1_t_87)
-    )
-    # (rrrrrr-N130) leg force on the platform without actuation and without the mass at the connection point
-    c_x = (
-    G_t_3*w_1_t_53 + G_t_4*w_1_t_71 + W_5_xx*h_5_x - B_5_xy*h_5_y - B_5_xz*h_5_z - G_t_5*w_1_t_83
-    )
-    c_y = (
-    G_t_5*w_1_t_84 + h_5_y*(W_5_t + W_5_t_3) - B_5_yx*h_5_x - B_5_yz*h_5_z - G_t*w_1_t_16 -
-        G_t_2*w_1_t_32 - G_t_3*w_1_t_54 - G_t_4*w_1_t_72
-    )
-    c_z = (
-    G_t_2*w_1_t_33 + G_t_3*w_1_t_55 + G_t_4*w_1_t_73 + h_5_z*(W_5_t + W_5_t_2) - B_5_zx*h_5_x -
-        B_5_zy*h_5_y - G_t_5*w_1_t_85
-    )
-    # (rrrrrr-N140) leg force on the platform without actuation, the last link's mass included
-    c_true_x = c_x - acc_5_x*rrrrrr_link5_mass
-    c_true_y = c_y - acc_5_y*rrrrrr_link5_mass
-    c_true_z = c_z - acc_5_z*rrrrrr_link5_mass
-    c_true_in_base_x = (
-    axis_x_rrrrrr_axes5_x*c_true_x + axis_y_rrrrrr_axes5_in_base_x*c_true_y +
-        axis_z_rrrrrr_axes5_in_base_x*c_true_z
-    )
-    c_true_in_base_y = (
-    axis_x_rrrrrr_axes5_y*c_true_x + axis_y_rrrrrr_axes5_in_base_y*c_true_y +
-        axis_z_rrrrrr_axes5_in_base_y*c_true_z
-    )
-    c_true_in_base_z = (
-    axis_x_rrrrrr_axes5_z*c_true_x + axis_y_rrrrrr_axes5_in_base_z*c_true_y +
-        axis_z_rrrrrr_axes5_in_base_z*c_true_z
-    )
-    # (rrrrrr-N126) moment at the connection point that balances the leg's inertia and weight along all freedoms
-    G_m_t = G_t_6*end_p1_r8_y
-    G_m_t_2 = G_t_7*end_p1_r8_y
-    G_m_y = G_t_7*end_p1_r6_x - G_t_6*end_p1_r8_x
-    # (rrrrrr-N135) moment of the leg on the platform without actuation
-    c_m_in_base_x = (
-    G_m_t_2*axis_z_rrrrrr_axes5_in_base_x - G_m_t*axis_x_rrrrrr_axes5_x -
-        G_m_y*axis_y_rrrrrr_axes5_in_base_x
-    )
-    c_m_in_base_y = (
-    G_m_t_2*axis_z_rrrrrr_axes5_in_base_y - G_m_t*axis_x_rrrrrr_axes5_y -
-        G_m_y*axis_y_rrrrrr_axes5_in_base_y
-    )
-    c_m_in_base_z = (
-    G_m_t_2*axis_z_rrrrrr_axes5_in_base_z - G_m_t*axis_x_rrrrrr_axes5_z -
-        G_m_y*axis_y_rrrrrr_axes5_in_base_z
-    )
-    # (rrrrrr-V29) moment part of reciprocal wrench 2
-    o_2_in_base_x = (
-    axis_y_rrrrrr_axes5_in_base_x*o_2_y + axis_z_rrrrrr_axes5_in_base_x*o_2_t_2 -
-        axis_x_rrrrrr_axes5_x*o_2_t
-    )
-    o_2_in_base_y = (
-    axis_y_rrrrrr_axes5_in_base_y*o_2_y + axis_z_rrrrrr_axes5_in_base_y*o_2_t_2 -
-        axis_x_rrrrrr_axes5_y*o_2_t
-    )
-    o_2_in_base_z = (
-    axis_y_rrrrrr_axes5_in_base_z*o_2_y + axis_z_rrrrrr_axes5_in_base_z*o_2_t_2 -
-        axis_x_rrrrrr_axes5_z*o_2_t
-    )
-    ok = (abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE * size) & (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) & (abs(w_1_t_82) > _TOLERANCE * size)
-    return (
-    ok, (), (c_true_in_base_x, c_true_in_base_y, c_true_in_base_z, c_m_in_base_x, c_m_in_base_y,
-        c_m_in_base_z, w_2_in_base_x, w_2_in_base_y, w_2_in_base_z, o_2_in_base_x, o_2_in_base_y,
-        o_2_in_base_z,),
-    )
+    ok = True
+    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    out_leg_force = m.zeros(36)
+    out_drive = m.zeros(36)
+    for leg, k in legs[0]:
+        (
+        J_1_xx, J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, J_4_xy, J_4_xz, J_4_yz, J_5_xy,
+            J_5_xz, J_5_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy,
+            Sigma_3_zz, Sigma_4_xx, Sigma_4_yy, Sigma_4_zz, Sigma_5_xx, Sigma_5_yy, Sigma_5_zz,
+            g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, h_4_x,
+            h_4_y, h_4_z, h_5_x, h_5_y, h_5_z, rrrrrr_base_frame_xx, rrrrrr_base_frame_xy,
+            rrrrrr_base_frame_xz, rrrrrr_base_frame_yx, rrrrrr_base_frame_yy,
+            rrrrrr_base_frame_yz, rrrrrr_base_frame_zx, rrrrrr_base_frame_zy,
+            rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x, rrrrrr_joint3_offset_x,
+            rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x, rrrrrr_link3_mass, rrrrrr_link4_mass,
+            rrrrrr_link5_mass, rrrrrr_platform_joint_axis_platform_x,
+            rrrrrr_platform_joint_axis_platform_y, rrrrrr_platform_joint_axis_platform_z,
+            rrrrrr_platform_joint_offset_x, rrrrrr_platform_point_x, rrrrrr_platform_point_y,
+            rrrrrr_platform_point_z, size, size_t,
+        ) = k
+        q_1 = q[[0, 5, 10, 15, 20, 25][leg]]
+        q_2 = q[[1, 6, 11, 16, 21, 26][leg]]
+        q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
+        q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
+        q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
+        # (rrrrrr-K10) cosine of the angle of joint 5 from its reference direction
+        c_5_t = sin(q_5)
+        # (rrrrrr-K11) sine of the angle of joint 5 from its reference direction
+        s_5 = cos(q_5)
+        # (rrrrrr-V2) from joint 4 to the connection point, along the links
+        r_4_t = c_5_t*rrrrrr_platform_joint_offset_x
+        r_4_z = rrrrrr_joint5_offset_x + rrrrrr_platform_joint_offset_x*s_5
+        # (rrrrrr-K8) cosine of the angle of joint 4 from its reference direction
+        c_4_t = sin(q_4)
+        # (rrrrrr-K9) sine of the angle of joint 4 from its reference direction
+        s_4 = cos(q_4)
+        # (rrrrrr-V2) from joint 4 to the connection point, along the links
+        r_4_t_2 = r_4_t*s_4
+        r_4_t_3 = c_4_t*r_4_t
+        # (rrrrrr-V3) from joint 3 to the connection point, along the links
+        r_3_x = r_4_z + rrrrrr_joint4_offset_x
+        # (rrrrrr-K6) cosine of the angle of joint 3 from its reference direction
+        c_3 = cos(q_3)
+        # (rrrrrr-K7) sine of the angle of joint 3 from its reference direction
+        s_3 = sin(q_3)
+        # (rrrrrr-V3) from joint 3 to the connection point, along the links
+        r_3_r0_y = c_3*r_4_t_2 + r_3_x*s_3
+        # (rrrrrr-V4) from joint 2 to the connection point, along the links
+        r_2_x = rrrrrr_joint3_offset_x + c_3*r_3_x - r_4_t_2*s_3
+        # (rrrrrr-K4) cosine of the angle of joint 2 from its reference direction
+        c_2_t = sin(q_2)
+        # (rrrrrr-K5) sine of the angle of joint 2 from its reference direction
+        s_2 = cos(q_2)
+        # (rrrrrr-V4) from joint 2 to the connection point, along the links
+        r_2_r0_x = -c_2_t*r_2_x - r_3_r0_y*s_2
+        # (rrrrrr-V5) from joint 1 to the connection point, along the links
+        r_1_z = rrrrrr_joint2_offset_x + r_2_x*s_2 - c_2_t*r_3_r0_y
+        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
+        e_1_r2_x = c_3*s_2 - c_2_t*s_3
+        e_1_r2_y = -c_2_t*c_3 - s_2*s_3
+        v_1_t = c_4_t*e_1_r2_y
+        v_1_t_2 = e_1_r2_y*s_4
+        e_1_r6_x = c_5_t*v_1_t_2 + e_1_r2_x*s_5
+        e_1_r6_y = s_5*v_1_t_2 - c_5_t*e_1_r2_x
+        # (rrrrrr-V5) from joint 1 to the connection point, along the links
+        r_1_r1_x = r_1_z*s_2 - c_2_t*r_2_r0_x
+        r_1_r1_y = -c_2_t*r_1_z - r_2_r0_x*s_2
+        r_1_r2_x = c_3*r_1_r1_x + r_1_r1_y*s_3
+        r_1_r2_y = c_3*r_1_r1_y - r_1_r1_x*s_3
+        r_1_t = r_4_t_3*s_4
+        r_1_r4_x = r_1_t - c_4_t*r_1_r2_y
+        r_1_t_2 = c_4_t*r_4_t_3
+        r_1_r4_y = -r_1_t_2 - r_1_r2_y*s_4
+        r_1_r6_x = r_1_r2_x*s_5 - c_5_t*r_1_r4_y
+        r_1_r6_y = -c_5_t*r_1_r2_x - r_1_r4_y*s_5
+        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
+        v_1_x = e_1_r6_y*r_1_r4_x + r_1_r6_y*v_1_t
+        v_1_y = -e_1_r6_x*r_1_r4_x - r_1_r6_x*v_1_t
+        v_1_z = e_1_r6_x*r_1_r6_y - e_1_r6_y*r_1_r6_x
+        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
+        v_2_t = c_4_t*c_5_t
+        v_2_t_2 = c_4_t*s_5
+        # (rrrrrr-V4) from joint 2 to the connection point, along the links
+        r_2_r0_x_2 = c_3*r_2_x + r_3_r0_y*s_3
+        r_2_r0_y = c_3*r_3_r0_y - r_2_x*s_3
+        r_2_r2_x = r_1_t - c_4_t*r_2_r0_y
+        r_2_r2_y = -r_1_t_2 - r_2_r0_y*s_4
+        r_2_r4_x = r_2_r0_x_2*s_5 - c_5_t*r_2_r2_y
+        r_2_r4_y = -c_5_t*r_2_r0_x_2 - r_2_r2_y*s_5
+        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
+        v_2_x = r_2_r2_x*v_2_t_2 - r_2_r4_y*s_4
+        v_2_y = r_2_r4_x*s_4 - r_2_r2_x*v_2_t
+        v_2_z = r_2_r4_y*v_2_t - r_2_r4_x*v_2_t_2
+        # (rrrrrr-V3) from joint 3 to the connection point, along the links
+        r_3_r1_x = r_1_t - c_4_t*r_4_t_2
+        r_3_r1_y = -r_1_t_2 - r_4_t_2*s_4
+        r_3_r3_x = r_3_x*s_5 - c_5_t*r_3_r1_y
+        r_3_r3_y = -c_5_t*r_3_x - r_3_r1_y*s_5
+        # (rrrrrr-V8) velocity of the connection point per rate of joint 3
+        v_3_x = r_3_r1_x*v_2_t_2 - r_3_r3_y*s_4
+        v_3_y = r_3_r3_x*s_4 - r_3_r1_x*v_2_t
+        v_3_z = r_3_r3_y*v_2_t - r_3_r3_x*v_2_t_2
+        # (rrrrrr-V9) velocity of the connection point per rate of joint 4
+        v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
+        # (rrrrrr-V13) force part of reciprocal wrench 1
+        w_1_t = c_4_t*s_3
+        w_1_t_2 = c_3*c_4_t
+        axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_2 - c_2_t*w_1_t
+        axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_2 + s_2*w_1_t
+        # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
+        c_1_t = sin(q_1)
+        # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
+        s_1 = cos(q_1)
+        # (rrrrrr-V13) force part of reciprocal wrench 1
+        axis_z_rrrrrr_axes5_r7_x = -axis_z_rrrrrr_axes5_r5_x*s_1 - c_1_t*s_4
+        axis_z_rrrrrr_axes5_r7_y = s_1*s_4 - axis_z_rrrrrr_axes5_r5_x*c_1_t
+        axis_z_rrrrrr_axes5_in_base_x = (
+        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx +
+            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy +
+            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
+        )
+        axis_z_rrrrrr_axes5_in_base_y = (
+        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx +
+            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy +
+            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
+        )
+        axis_z_rrrrrr_axes5_in_base_z = (
+        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx +
+            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy +
+            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
+        )
+        w_1_t_3 = s_4*s_5
+        axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_3
+        axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_3 - c_5_t*s_3
+        axis_y_rrrrrr_axes5_r5_x = -axis_y_rrrrrr_axes5_r4_x*c_2_t - axis_y_rrrrrr_axes5_r4_y*s_2
+        axis_y_rrrrrr_axes5_r5_y = axis_y_rrrrrr_axes5_r4_x*s_2 - axis_y_rrrrrr_axes5_r4_y*c_2_t
+        axis_y_rrrrrr_axes5_r7_x = -axis_y_rrrrrr_axes5_r5_x*s_1 - c_1_t*v_2_t_2
+        axis_y_rrrrrr_axes5_r7_y = s_1*v_2_t_2 - axis_y_rrrrrr_axes5_r5_x*c_1_t
+        axis_y_rrrrrr_axes5_in_base_x = (
+        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx +
+            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy +
+            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
+        )
+        axis_y_rrrrrr_axes5_in_base_y = (
+        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx +
+            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy +
+            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
+        )
+        axis_y_rrrrrr_axes5_in_base_z = (
+        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx +
+            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy +
+            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
+        )
+        axis_x_rrrrrr_axes5_x = (
+        axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_z -
+            axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_y
+        )
+        axis_x_rrrrrr_axes5_y = (
+        axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_x -
+            axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_z
+        )
+        axis_x_rrrrrr_axes5_z = (
+        axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_y -
+            axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_x
+        )
+        # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
+        end_p1_r0_x = (
+        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xy +
+            R_yx*rrrrrr_base_frame_yy + R_zx*rrrrrr_base_frame_zy) +
+            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xy +
+            R_yy*rrrrrr_base_frame_yy + R_zy*rrrrrr_base_frame_zy) +
+            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xy +
+            R_yz*rrrrrr_base_frame_yy + R_zz*rrrrrr_base_frame_zy)
+        )
+        end_p1_r0_y = (
+        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xz +
+            R_yx*rrrrrr_base_frame_yz + R_zx*rrrrrr_base_frame_zz) +
+            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xz +
+            R_yy*rrrrrr_base_frame_yz + R_zy*rrrrrr_base_frame_zz) +
+            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xz +
+            R_yz*rrrrrr_base_frame_yz + R_zz*rrrrrr_base_frame_zz)
+        )
+        end_p1_r0_z = (
+        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xx +
+            R_yx*rrrrrr_base_frame_yx + R_zx*rrrrrr_base_frame_zx) +
+            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xx +
+            R_yy*rrrrrr_base_frame_yx + R_zy*rrrrrr_base_frame_zx) +
+            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xx +
+            R_yz*rrrrrr_base_frame_yx + R_zz*rrrrrr_base_frame_zx)
+        )
+        end_p1_r1_x = end_p1_r0_y*s_1 - c_1_t*end_p1_r0_x
+        end_p1_r1_y = -c_1_t*end_p1_r0_y - end_p1_r0_x*s_1
+        end_p1_r3_x = end_p1_r0_z*s_2 - c_2_t*end_p1_r1_y
+        end_p1_r3_y = -c_2_t*end_p1_r0_z - end_p1_r1_y*s_2
+        end_p1_r4_x = c_3*end_p1_r3_x + end_p1_r3_y*s_3
+        end_p1_r4_y = c_3*end_p1_r3_y - end_p1_r3_x*s_3
+        end_p1_r6_x = end_p1_r1_x*s_4 - c_4_t*end_p1_r4_y
+        end_p1_r6_y = -c_4_t*end_p1_r1_x - end_p1_r4_y*s_4
+        end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
+        end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
+        # (rrrrrr-V13) force part of reciprocal wrench 1
+        w_1_t_4 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
+        w_1_t_5 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
+        w_1_t_6 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
+        w_1_t_7 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
+        w_1_t_8 = size*w_1_t_4
+        w_1_t_9 = size*w_1_t_6
+        w_1_t_10 = size*w_1_t_5
+        w_1_t_11 = size*w_1_t_7
+        w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
+        w_1_t_13 = c_5_t*end_p1_r6_x*size
+        w_1_t_14 = end_p1_r8_y*size
+        w_1_t_15 = sqrt(size_t + w_1_t_14*w_1_t_14)
+        inv_w_1_t_69 = 1.0/w_1_t_15
+        w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
+        w_1_t_17 = inv_w_1_t_69*w_1_t_14
+        w_1_t_18 = w_1_t_13*w_1_t_17
+        w_1_t_19 = w_1_t_16*w_1_t_18
+        w_1_t_20 = w_1_t_13 - w_1_t_17*w_1_t_18
+        w_1_t_21 = v_1_y*w_1_t_16 - w_1_t_17*w_1_t_9
+        w_1_t_22 = v_1_y - w_1_t_16*w_1_t_21
+        w_1_t_23 = w_1_t_9 + w_1_t_17*w_1_t_21
+        w_1_t_24 = w_1_t_11*w_1_t_17
+        w_1_t_25 = v_2_y*w_1_t_16 - w_1_t_24
+        w_1_t_26 = v_2_y - w_1_t_16*w_1_t_25
+        w_1_t_27 = w_1_t_11 + w_1_t_17*w_1_t_25
+        w_1_t_28 = w_1_t_24 - v_3_y*w_1_t_16
+        w_1_t_29 = v_3_y + w_1_t_16*w_1_t_28
+        w_1_t_30 = w_1_t_11 - w_1_t_17*w_1_t_28
+        w_1_t_31 = sqrt(v_4_z*v_4_z + w_1_t_12*w_1_t_12 + w_1_t_19*w_1_t_19 + w_1_t_20*w_1_t_20)
+        inv_w_1_t_101 = 1.0/w_1_t_31
+        w_1_t_32 = inv_w_1_t_101*w_1_t_19
+        w_1_t_33 = inv_w_1_t_101*v_4_z
+        w_1_t_34 = inv_w_1_t_101*w_1_t_12
+        w_1_t_35 = inv_w_1_t_101*w_1_t_20
+        w_1_t_36 = w_1_t_22*w_1_t_32 + w_1_t_23*w_1_t_35 + w_1_t_34*w_1_t_8 - v_1_z*w_1_t_33
+        w_1_t_37 = w_1_t_32*w_1_t_36 - w_1_t_22
+        w_1_t_38 = v_1_z + w_1_t_33*w_1_t_36
+        w_1_t_39 = w_1_t_34*w_1_t_36 - w_1_t_8
+        w_1_t_40 = w_1_t_35*w_1_t_36 - w_1_t_23
+        w_1_t_41 = w_1_t_10*w_1_t_34
+        w_1_t_42 = w_1_t_41 + w_1_t_26*w_1_t_32 + w_1_t_27*w_1_t_35 - v_2_z*w_1_t_33
+        w_1_t_43 = w_1_t_32*w_1_t_42 - w_1_t_26
+        w_1_t_44 = v_2_z + w_1_t_33*w_1_t_42
+        w_1_t_45 = w_1_t_34*w_1_t_42 - w_1_t_10
+        w_1_t_46 = w_1_t_35*w_1_t_42 - w_1_t_27
+        w_1_t_47 = w_1_t_41 + w_1_t_29*w_1_t_32 + w_1_t_30*w_1_t_35 - v_3_z*w_1_t_33
+        w_1_t_48 = w_1_t_32*w_1_t_47 - w_1_t_29
+        w_1_t_49 = v_3_z + w_1_t_33*w_1_t_47
+        w_1_t_50 = w_1_t_34*w_1_t_47 - w_1_t_10
+        w_1_t_51 = w_1_t_35*w_1_t_47 - w_1_t_30
+        w_1_t_52 = (
+        sqrt(v_1_x*v_1_x + w_1_t_37*w_1_t_37 + w_1_t_38*w_1_t_38 + w_1_t_39*w_1_t_39 +
+            w_1_t_40*w_1_t_40)
+        )
+        inv_w_1_t_150 = 1.0/w_1_t_52
+        w_1_t_53 = inv_w_1_t_150*v_1_x
+        w_1_t_54 = inv_w_1_t_150*w_1_t_37
+        w_1_t_55 = inv_w_1_t_150*w_1_t_38
+        w_1_t_56 = inv_w_1_t_150*w_1_t_39
+        w_1_t_57 = inv_w_1_t_150*w_1_t_40
+        w_1_t_58 = (
+        v_2_x*w_1_t_53 + w_1_t_43*w_1_t_54 + w_1_t_44*w_1_t_55 + w_1_t_45*w_1_t_56 +
+            w_1_t_46*w_1_t_57
+        )
+        w_1_t_59 = v_2_x - w_1_t_53*w_1_t_58
+        w_1_t_60 = w_1_t_43 - w_1_t_54*w_1_t_58
+        w_1_t_61 = w_1_t_44 - w_1_t_55*w_1_t_58
+        w_1_t_62 = w_1_t_45 - w_1_t_56*w_1_t_58
+        w_1_t_63 = w_1_t_46 - w_1_t_57*w_1_t_58
+        w_1_t_64 = (
+        v_3_x*w_1_t_53 + w_1_t_48*w_1_t_54 + w_1_t_49*w_1_t_55 + w_1_t_50*w_1_t_56 +
+            w_1_t_51*w_1_t_57
+        )
+        w_1_t_65 = v_3_x - w_1_t_53*w_1_t_64
+        w_1_t_66 = w_1_t_48 - w_1_t_54*w_1_t_64
+        w_1_t_67 = w_1_t_49 - w_1_t_55*w_1_t_64
+        w_1_t_68 = w_1_t_50 - w_1_t_56*w_1_t_64
+        w_1_t_69 = w_1_t_51 - w_1_t_57*w_1_t_64
+        w_1_t_70 = (
+        sqrt(w_1_t_59*w_1_t_59 + w_1_t_60*w_1_t_60 + w_1_t_61*w_1_t_61 + w_1_t_62*w_1_t_62 +
+            w_1_t_63*w_1_t_63)
+        )
+        inv_w_1_t_194 = 1.0/w_1_t_70
+        w_1_t_71 = inv_w_1_t_194*w_1_t_59
+        w_1_t_72 = inv_w_1_t_194*w_1_t_60
+        w_1_t_73 = inv_w_1_t_194*w_1_t_61
+        w_1_t_74 = inv_w_1_t_194*w_1_t_62
+        w_1_t_75 = inv_w_1_t_194*w_1_t_63
+        w_1_t_76 = (
+        w_1_t_65*w_1_t_71 + w_1_t_66*w_1_t_72 + w_1_t_67*w_1_t_73 + w_1_t_68*w_1_t_74 +
+            w_1_t_69*w_1_t_75
+        )
+        w_1_t_77 = w_1_t_65 - w_1_t_71*w_1_t_76
+        w_1_t_78 = w_1_t_66 - w_1_t_72*w_1_t_76
+        w_1_t_79 = w_1_t_67 - w_1_t_73*w_1_t_76
+        w_1_t_80 = w_1_t_68 - w_1_t_74*w_1_t_76
+        w_1_t_81 = w_1_t_69 - w_1_t_75*w_1_t_76
+        w_1_t_82 = (
+        sqrt(w_1_t_77*w_1_t_77 + w_1_t_78*w_1_t_78 + w_1_t_79*w_1_t_79 + w_1_t_80*w_1_t_80 +
+            w_1_t_81*w_1_t_81)
+        )
+        inv_w_1_t_222 = 1.0/w_1_t_82
+        w_1_t_83 = inv_w_1_t_222*w_1_t_77
+        w_1_t_84 = inv_w_1_t_222*w_1_t_78
+        w_1_t_85 = inv_w_1_t_222*w_1_t_79
+        w_1_t_86 = inv_w_1_t_222*w_1_t_80
+        w_1_t_87 = inv_w_1_t_222*w_1_t_81
+        # (rrrrrr-V16) force part of reciprocal wrench 2
+        w_2_t = inv_w_1_t_194*inv_w_1_t_222*w_1_t_76
+        w_2_t_2 = inv_w_1_t_194*w_1_t_71 - w_1_t_83*w_2_t
+        w_2_t_3 = inv_w_1_t_194*w_1_t_72 - w_1_t_84*w_2_t
+        w_2_t_4 = w_1_t_85*w_2_t - inv_w_1_t_194*w_1_t_73
+        w_2_t_5 = size*(inv_w_1_t_194*w_1_t_74 - w_1_t_86*w_2_t)
+        w_2_t_6 = size*(inv_w_1_t_194*w_1_t_75 - w_1_t_87*w_2_t)
+        # (rrrrrr-V29) moment part of reciprocal wrench 2
+        o_2_t = end_p1_r8_y*w_2_t_5
+        o_2_t_2 = end_p1_r8_y*w_2_t_6
+        o_2_y = end_p1_r8_x*w_2_t_5 - end_p1_r6_x*w_2_t_6
+        # (M2) coupling block of M
+        q_in_base_x = (
+        R_xx*rrrrrr_platform_point_x + R_xy*rrrrrr_platform_point_y + R_xz*rrrrrr_platform_point_z
+        )
+        q_in_base_y = (
+        R_yx*rrrrrr_platform_point_x + R_yy*rrrrrr_platform_point_y + R_yz*rrrrrr_platform_point_z
+        )
+        q_in_base_z = (
+        R_zx*rrrrrr_platform_point_x + R_zy*rrrrrr_platform_point_y + R_zz*rrrrrr_platform_point_z
+        )
+        # (rrrrrr-V1) velocity of the connection point
+        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
+        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
+        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
+        S_dot_x = S_dot_t + t_dot_x
+        S_dot_y = S_dot_t_2 + t_dot_y
+        S_dot_z = S_dot_t_3 + t_dot_z
+        S_dot_tip_x = (
+        S_dot_x*axis_x_rrrrrr_axes5_x + S_dot_y*axis_x_rrrrrr_axes5_y +
+            S_dot_z*axis_x_rrrrrr_axes5_z
+        )
+        S_dot_tip_y = (
+        S_dot_x*axis_y_rrrrrr_axes5_in_base_x + S_dot_y*axis_y_rrrrrr_axes5_in_base_y +
+            S_dot_z*axis_y_rrrrrr_axes5_in_base_z
+        )
+        S_dot_tip_z = (
+        S_dot_x*axis_z_rrrrrr_axes5_in_base_x + S_dot_y*axis_z_rrrrrr_axes5_in_base_y +
+            S_dot_z*axis_z_rrrrrr_axes5_in_base_z
+        )
+        # (rrrrrr-A14) rate of moment direction 1
+        omega_tip_x = (
+        axis_x_rrrrrr_axes5_x*omega_x + axis_x_rrrrrr_axes5_y*omega_y +
+            axis_x_rrrrrr_axes5_z*omega_z
+        )
+        omega_tip_y = (
+        axis_y_rrrrrr_axes5_in_base_x*omega_x + axis_y_rrrrrr_axes5_in_base_y*omega_y +
+            axis_y_rrrrrr_axes5_in_base_z*omega_z
+        )
+        omega_tip_z = (
+        axis_z_rrrrrr_axes5_in_base_x*omega_x + axis_z_rrrrrr_axes5_in_base_y*omega_y +
+            axis_z_rrrrrr_axes5_in_base_z*omega_z
+        )
+        nd_m1_t = end_p1_r6_x*omega_tip_y - end_p1_r8_y*omega_tip_z
+        nd_m1_t_2 = end_p1_r8_x*omega_tip_z - end_p1_r6_x*omega_tip_x
+        nd_m1_t_3 = end_p1_r8_y*omega_tip_x - end_p1_r8_x*omega_tip_y
+        # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
+        bias_t = rrrrrr_joint2_offset_x*s_2
+        bias_t_2 = c_2_t*rrrrrr_joint2_offset_x
+        d_2_r2_x = bias_t*c_3 - bias_t_2*s_3
+        d_2_r2_y = -bias_t*s_3 - bias_t_2*c_3
+        bias_t_3 = c_4_t*d_2_r2_y
+        bias_t_4 = d_2_r2_y*s_4
+        d_2_r6_x = bias_t_4*c_5_t + d_2_r2_x*s_5
+        d_2_r6_y = bias_t_4*s_5 - c_5_t*d_2_r2_x
+        bias_t_5 = c_3*rrrrrr_joint3_offset_x
+        bias_t_6 = rrrrrr_joint3_offset_x*s_3
+        bias_t_7 = bias_t_6*c_4_t
+        bias_t_8 = bias_t_6*s_4
+        d_3_r4_x = bias_t_5*s_5 - bias_t_8*c_5_t
+        d_3_r4_y = -bias_t_5*c_5_t - bias_t_8*s_5
+        bias_t_9 = rrrrrr_joint4_offset_x*s_5
+        bias_t_10 = c_5_t*rrrrrr_joint4_offset_x
+        bias_t_11 = rrrrrr_joint5_offset_x*s_5
+        bias_t_12 = c_5_t*rrrrrr_joint5_offset_x
+        # (rrrrrr-N16) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
+        g_r1_x = g_r0_y*s_1 - c_1_t*g_r0_x
+        g_r1_y = -c_1_t*g_r0_y - g_r0_x*s_1
+        g_r3_x = g_r0_z*s_2 - c_2_t*g_r1_y
+        g_r3_y = -c_2_t*g_r0_z - g_r1_y*s_2
+        g_r4_x = c_3*g_r3_x + g_r3_y*s_3
+        g_r4_y = c_3*g_r3_y - g_r3_x*s_3
+        # (rrrrrr-V16) force part of reciprocal wrench 2
+        w_2_in_base_x = (
+        axis_x_rrrrrr_axes5_x*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_x*w_2_t_3 -
+            axis_z_rrrrrr_axes5_in_base_x*w_2_t_4
+        )
+        w_2_in_base_y = (
+        axis_x_rrrrrr_axes5_y*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_y*w_2_t_3 -
+            axis_z_rrrrrr_axes5_in_base_y*w_2_t_4
+        )
+        w_2_in_base_z = (
+        axis_x_rrrrrr_axes5_z*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_z*w_2_t_3 -
+            axis_z_rrrrrr_axes5_in_base_z*w_2_t_4
+        )
+        # (rrrrrr-V35) rate of joint 1
+        qd_1_t = nd_m1_t_3*size
+        qd_1_t_2 = nd_m1_t*size
+        qd_1_t_3 = (
+        inv_w_1_t_222*(S_dot_tip_y*w_1_t_84 + qd_1_t*w_1_t_86 + qd_1_t_2*w_1_t_87 -
+            S_dot_tip_x*w_1_t_83 - S_dot_tip_z*w_1_t_85)
+        )
+        qd_1_t_4 = (
+        inv_w_1_t_194*(S_dot_tip_y*w_1_t_72 + qd_1_t*w_1_t_74 + qd_1_t_2*w_1_t_75 -
+            S_dot_tip_x*w_1_t_71 - S_dot_tip_z*w_1_t_73 - qd_1_t_3*w_1_t_76)
+        )
+        qd_1_t_5 = (
+        inv_w_1_t_150*(S_dot_tip_x*w_1_t_53 + S_dot_tip_z*w_1_t_55 + qd_1_t_3*w_1_t_64 +
+            qd_1_t_4*w_1_t_58 - S_dot_tip_y*w_1_t_54 - qd_1_t*w_1_t_56 - qd_1_t_2*w_1_t_57)
+        )
+        qd_1_t_6 = (
+        inv_w_1_t_101*(S_dot_tip_y*w_1_t_32 + qd_1_t*w_1_t_34 + qd_1_t_2*w_1_t_35 +
+            qd_1_t_3*w_1_t_47 + qd_1_t_4*w_1_t_42 - S_dot_tip_z*w_1_t_33 - qd_1_t_5*w_1_t_36)
+        )
+        qd_1_t_7 = (
+        inv_w_1_t_69*(S_dot_tip_y*w_1_t_16 + qd_1_t_4*w_1_t_25 + qd_1_t_6*w_1_t_18 -
+            qd_1_t_2*w_1_t_17 - qd_1_t_3*w_1_t_28 - qd_1_t_5*w_1_t_21)
+        )
+        # (rrrrrr-V40) angular velocity of link 1
+        omega_1_t = qd_1_t_5*s_2
+        omega_1_t_2 = c_2_t*qd_1_t_5
+        # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
+        zeta_2_x = omega_1_t_2*qd_1_t_4
+        zeta_2_y = omega_1_t*qd_1_t_4
+        # (rrrrrr-V42) angular velocity of link 2
+        omega_2_r0_x = c_3*omega_1_t - omega_1_t_2*s_3
+        omega_2_r0_y = -c_3*omega_1_t_2 - omega_1_t*s_3
+        # (rrrrrr-A5) angular acceleration of link 3 from the turning of axis 3
+        zeta_3_x = omega_2_r0_y*qd_1_t_3
+        zeta_3_y = omega_2_r0_x*qd_1_t_3
+        # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
+        zeta_2_r0_x = c_3*zeta_2_x + s_3*zeta_2_y
+        zeta_2_r0_y = c_3*zeta_2_y - s_3*zeta_2_x
+        # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
+        beta_3_x = zeta_2_r0_x - zeta_3_x
+        beta_3_y = zeta_2_r0_y + zeta_3_y
+        # (rrrrrr-V44) angular velocity of link 3
+        omega_3_z = -qd_1_t_3 - qd_1_t_4
+        omega_3_r1_x = omega_3_z*s_4 - c_4_t*omega_2_r0_y
+        omega_3_r1_y = -c_4_t*omega_3_z - omega_2_r0_y*s_4
+        # (rrrrrr-A7) angular acceleration of link 4 from the turning of axis 4
+        zeta_4_x = omega_3_r1_y*qd_1_t_6
+        zeta_4_y = omega_3_r1_x*qd_1_t_6
+        # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
+        beta_3_t = beta_3_y*c_4_t
+        beta_3_t_2 = beta_3_y*s_4
+        # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
+        beta_4_x = -beta_3_t - zeta_4_x
+        beta_4_y = zeta_4_y - beta_3_t_2
+        # (rrrrrr-V46) angular velocity of link 4
+        omega_4_z = omega_2_r0_x - qd_1_t_6
+        omega_4_t = c_5_t*omega_3_r1_y
+        omega_4_r1_x = omega_4_z*s_5 - omega_4_t
+        omega_4_t_2 = omega_3_r1_y*s_5
+        omega_4_r1_y = -omega_4_t_2 - c_5_t*omega_4_z
+        # (rrrrrr-A9) angular acceleration of link 5 from the turning of axis 5
+        zeta_5_x = omega_4_r1_y*qd_1_t_7
+        zeta_5_y = omega_4_r1_x*qd_1_t_7
+        # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
+        beta_4_t = beta_3_x*s_5
+        beta_4_r1_x = beta_4_t - beta_4_y*c_5_t
+        beta_4_t_2 = beta_3_x*c_5_t
+        beta_4_r1_y = -beta_4_t_2 - beta_4_y*s_5
+        # (rrrrrr-A10) angular acceleration of link 5 at zero joint accelerations
+        beta_5_x = beta_4_r1_x + zeta_5_x
+        beta_5_y = beta_4_r1_y - zeta_5_y
+        # (rrrrrr-V48) angular velocity of link 5
+        omega_5_z = omega_3_r1_x + qd_1_t_7
+        # (rrrrrr-A14) rate of moment direction 1
+        nd_m1_t_4 = end_p1_r8_y*omega_4_r1_y
+        nd_m1_x = -nd_m1_t_2 - end_p1_r6_x*omega_4_r1_x
+        nd_m1_y = nd_m1_t - end_p1_r6_x*omega_4_r1_y
+        # (rrrrrr-A15) bias of the angular acceleration along moment direction 1
+        nu_1_t = beta_5_x*end_p1_r8_y - beta_5_y*end_p1_r8_x
+        nu_1_t_2 = omega_4_r1_x - omega_tip_x
+        nu_1_t_3 = omega_4_r1_y - omega_tip_y
+        nu_1_t_4 = omega_5_z - omega_tip_z
+        nu_1_t_5 = (
+        nd_m1_x*nu_1_t_2 + nd_m1_y*nu_1_t_3 + nu_1_t_4*(nd_m1_t_4 + end_p1_r8_x*omega_4_r1_x)
+        )
+        nu_1 = nu_1_t - nu_1_t_5
+        # (rrrrrr-A18) acceleration with which the joints turn along moment direction 1
+        alpha_tip_y = (
+        alpha_x*axis_y_rrrrrr_axes5_in_base_x + alpha_y*axis_y_rrrrrr_axes5_in_base_y +
+            alpha_z*axis_y_rrrrrr_axes5_in_base_z
+        )
+        etad_1_t = (
+        end_p1_r8_y*(alpha_x*axis_x_rrrrrr_axes5_x + alpha_y*axis_x_rrrrrr_axes5_y +
+            alpha_z*axis_x_rrrrrr_axes5_z) - alpha_tip_y*end_p1_r8_x
+        )
+        etad_1 = nu_1 - etad_1_t
+        # (rrrrrr-A16) rate of moment direction 2
+        nd_m2_y = -nd_m1_t_3 - end_p1_r8_x*omega_4_r1_y
+        nd_m2_z = nd_m1_t_2 - end_p1_r8_x*omega_5_z
+        # (rrrrrr-A17) bias of the angular acceleration along moment direction 2
+        nu_2_t = beta_5_y*end_p1_r6_x - beta_4_x*end_p1_r8_y
+        nu_2_t_2 = (
+        nd_m2_y*nu_1_t_3 + nd_m2_z*nu_1_t_4 + nu_1_t_2*(nd_m1_t_4 + end_p1_r6_x*omega_5_z)
+        )
+        nu_2 = nu_2_t - nu_2_t_2
+        # (rrrrrr-A19) acceleration with which the joints turn along moment direction 2
+        etad_2_t = (
+        alpha_tip_y*end_p1_r6_x - end_p1_r8_y*(alpha_x*axis_z_rrrrrr_axes5_in_base_x +
+            alpha_y*axis_z_rrrrrr_axes5_in_base_y + alpha_z*axis_z_rrrrrr_axes5_in_base_z)
+        )
+        etad_2 = nu_2 - etad_2_t
+        # (rrrrrr-A2) acceleration of the connection point without its centripetal part
+        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
+        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
+        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
+        # (rrrrrr-A3) acceleration of the connection point
+        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
+        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
+        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
+        # (rrrrrr-V43) centripetal tensor of link 2
+        W_2_t = omega_1_t*omega_1_t
+        W_2_t_2 = omega_1_t_2*omega_1_t_2
+        W_2_t_3 = qd_1_t_4*qd_1_t_4
+        W_2_xy = omega_1_t*omega_1_t_2
+        # (rrrrrr-V45) centripetal tensor of link 3
+        W_3_t = omega_2_r0_x*omega_2_r0_x
+        W_3_t_2 = omega_2_r0_y*omega_2_r0_y
+        W_3_t_3 = omega_3_z*omega_3_z
+        W_3_xx = W_3_t_2 + W_3_t_3
+        W_3_xy = omega_2_r0_x*omega_2_r0_y
+        W_3_xz = omega_2_r0_x*omega_3_z
+        W_3_yz = omega_2_r0_y*omega_3_z
+        # (rrrrrr-V47) centripetal tensor of link 4
+        W_4_t = omega_3_r1_x*omega_3_r1_x
+        W_4_t_2 = omega_3_r1_y*omega_3_r1_y
+        W_4_t_3 = omega_4_z*omega_4_z
+        W_4_xy = omega_3_r1_x*omega_3_r1_y
+        W_4_xz = omega_3_r1_x*omega_4_z
+        W_4_yz = omega_3_r1_y*omega_4_z
+        # (rrrrrr-V49) centripetal tensor of link 5
+        W_5_t = omega_4_r1_x*omega_4_r1_x
+        W_5_t_2 = omega_4_r1_y*omega_4_r1_y
+        W_5_t_3 = omega_5_z*omega_5_z
+        W_5_xx = W_5_t_2 + W_5_t_3
+        W_5_xy = omega_4_r1_x*omega_4_r1_y
+        W_5_xz = omega_4_r1_x*omega_5_z
+        W_5_yz = omega_4_r1_y*omega_5_z
+        # (rrrrrr-V40) angular velocity of link 1
+        omega_1_x = e_1_r6_x*qd_1_t_5
+        omega_1_y = e_1_r6_y*qd_1_t_5
+        omega_1_z = qd_1_t_5*v_1_t
+        # (rrrrrr-V41) centripetal tensor of link 1
+        W_1_t = omega_1_x*omega_1_x
+        W_1_t_2 = omega_1_y*omega_1_y
+        W_1_t_3 = omega_1_z*omega_1_z
+        W_1_xy = omega_1_x*omega_1_y
+        W_1_xz = omega_1_x*omega_1_z
+        W_1_yz = omega_1_y*omega_1_z
+        # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
+        zeta_2_t = c_4_t*zeta_2_r0_y
+        zeta_2_t_2 = s_4*zeta_2_r0_y
+        zeta_2_r4_x = c_5_t*zeta_2_t_2 + s_5*zeta_2_r0_x
+        zeta_2_r4_y = s_5*zeta_2_t_2 - c_5_t*zeta_2_r0_x
+        # (rrrrrr-V42) angular velocity of link 2
+        omega_2_x = omega_1_x - qd_1_t_4*v_2_t
+        omega_2_y = omega_1_y - qd_1_t_4*v_2_t_2
+        omega_2_z = -omega_1_z - qd_1_t_4*s_4
+        # (rrrrrr-V43) centripetal tensor of link 2
+        W_2_t_4 = omega_2_x*omega_2_x
+        W_2_t_5 = omega_2_y*omega_2_y
+        W_2_t_6 = omega_2_z*omega_2_z
+        W_2_xy_2 = omega_2_x*omega_2_y
+        W_2_xz = omega_2_x*omega_2_z
+        W_2_yz = omega_2_y*omega_2_z
+        # (rrrrrr-V44) angular velocity of link 3
+        omega_3_r3_x = omega_2_r0_x*s_5 - omega_4_t
+        omega_3_r3_y = -omega_4_t_2 - c_5_t*omega_2_r0_x
+        # (rrrrrr-V45) centripetal tensor of link 3
+        W_3_xy_2 = omega_3_r3_x*omega_3_r3_y
+        # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
+        bias_t_13 = W_5_xy + beta_4_x
+        bias_x = (
+        W_1_xy*d_2_r6_y + W_1_xz*bias_t_3 + bias_t_7*(W_2_xz + zeta_2_r4_y) + d_3_r4_y*(W_2_xy_2 +
+            zeta_2_t) - W_5_xx*rrrrrr_platform_joint_offset_x - bias_t_10*(W_3_xy_2 + beta_3_t) -
+            bias_t_11*(W_4_t + W_5_t_2) - bias_t_12*(W_5_xy - beta_4_x) - bias_t_9*(W_4_t +
+            omega_3_r3_y*omega_3_r3_y) - d_2_r6_x*(W_1_t_2 + W_1_t_3) - d_3_r4_x*(W_2_t_5 +
+            W_2_t_6)
+        )
+        bias_y = (
+        W_1_xy*d_2_r6_x + W_1_yz*bias_t_3 + bias_t_10*(W_4_t + omega_3_r3_x*omega_3_r3_x) +
+            bias_t_11*bias_t_13 + bias_t_12*(W_4_t + W_5_t) +
+            bias_t_13*rrrrrr_platform_joint_offset_x + bias_t_7*(W_2_yz - zeta_2_r4_x) +
+            bias_t_9*(W_3_xy_2 - beta_3_t) + d_3_r4_x*(W_2_xy_2 - zeta_2_t) - d_2_r6_y*(W_1_t +
+            W_1_t_3) - d_3_r4_y*(W_2_t_4 + W_2_t_6)
+        )
+        bias_z = (
+        bias_t_11*(omega_3_r1_x*omega_4_r1_x - beta_4_r1_y) + bias_t_3*(W_1_t + W_1_t_2) +
+            bias_t_9*(beta_4_t_2 + omega_3_r1_x*omega_3_r3_x - beta_3_t_2*s_5) + d_3_r4_x*(W_2_xz
+            - zeta_2_r4_y) + d_3_r4_y*(W_2_yz + zeta_2_r4_x) +
+            rrrrrr_platform_joint_offset_x*(W_5_xz - beta_5_y) - W_1_xz*d_2_r6_x - W_1_yz*d_2_r6_y
+            - bias_t_10*(beta_4_t + beta_3_t_2*c_5_t + omega_3_r1_x*omega_3_r3_y) -
+            bias_t_12*(beta_4_r1_x + omega_3_r1_x*omega_4_r1_y) - bias_t_7*(W_2_t_4 + W_2_t_5)
+        )
+        # (rrrrrr-A3) acceleration of the connection point
+        S_ddot_tip_x = (
+        S_ddot_x*axis_x_rrrrrr_axes5_x + S_ddot_y*axis_x_rrrrrr_axes5_y +
+            S_ddot_z*axis_x_rrrrrr_axes5_z
+        )
+        S_ddot_tip_y = (
+        S_ddot_x*axis_y_rrrrrr_axes5_in_base_x + S_ddot_y*axis_y_rrrrrr_axes5_in_base_y +
+            S_ddot_z*axis_y_rrrrrr_axes5_in_base_z
+        )
+        S_ddot_tip_z = (
+        S_ddot_x*axis_z_rrrrrr_axes5_in_base_x + S_ddot_y*axis_z_rrrrrr_axes5_in_base_y +
+            S_ddot_z*axis_z_rrrrrr_axes5_in_base_z
+        )
+        # (rrrrrr-A12) acceleration of the connection point left to the joint accelerations
+        rel_x = S_ddot_tip_x - bias_x
+        rel_y = S_ddot_tip_y - bias_y
+        rel_z = S_ddot_tip_z - bias_z
+        # (rrrrrr-A20) acceleration of joint 1
+        qdd_1_t = etad_1*size
+        qdd_1_t_2 = etad_2*size
+        qdd_1_t_3 = (
+        inv_w_1_t_222*(qdd_1_t*w_1_t_86 + qdd_1_t_2*w_1_t_87 + rel_x*w_1_t_83 + rel_z*w_1_t_85 -
+            rel_y*w_1_t_84)
+        )
+        qdd_1_t_4 = (
+        inv_w_1_t_194*(qdd_1_t*w_1_t_74 + qdd_1_t_2*w_1_t_75 + rel_x*w_1_t_71 + rel_z*w_1_t_73 -
+            qdd_1_t_3*w_1_t_76 - rel_y*w_1_t_72)
+        )
+        qdd_1_t_5 = (
+        inv_w_1_t_150*(qdd_1_t_3*w_1_t_64 + qdd_1_t_4*w_1_t_58 + rel_y*w_1_t_54 - qdd_1_t*w_1_t_56
+            - qdd_1_t_2*w_1_t_57 - rel_x*w_1_t_53 - rel_z*w_1_t_55)
+        )
+        qdd_1_t_6 = (
+        inv_w_1_t_101*(qdd_1_t*w_1_t_34 + qdd_1_t_2*w_1_t_35 + qdd_1_t_3*w_1_t_47 +
+            qdd_1_t_4*w_1_t_42 + rel_z*w_1_t_33 - qdd_1_t_5*w_1_t_36 - rel_y*w_1_t_32)
+        )
+        # (rrrrrr-N21) acceleration of the reference point of link 5, less gravity
+        acc_5_x = (
+        S_ddot_tip_x - axis_x_rrrrrr_axes5_x*gravity_x - axis_x_rrrrrr_axes5_y*gravity_y -
+            axis_x_rrrrrr_axes5_z*gravity_z
+        )
+        acc_5_y = (
+        S_ddot_tip_y - axis_y_rrrrrr_axes5_in_base_x*gravity_x -
+            axis_y_rrrrrr_axes5_in_base_y*gravity_y - axis_y_rrrrrr_axes5_in_base_z*gravity_z
+        )
+        acc_5_z = (
+        S_ddot_tip_z - axis_z_rrrrrr_axes5_in_base_x*gravity_x -
+            axis_z_rrrrrr_axes5_in_base_y*gravity_y - axis_z_rrrrrr_axes5_in_base_z*gravity_z
+        )
+        # (rrrrrr-A30) angular acceleration of link 1
+        alpha_1_t = qdd_1_t_5*s_2
+        alpha_1_t_2 = c_2_t*qdd_1_t_5
+        # (rrrrrr-A34) angular acceleration of link 2
+        alpha_2_x = zeta_2_x - alpha_1_t
+        alpha_2_y = alpha_1_t_2 + zeta_2_y
+        # (rrrrrr-A36) acceleration tensor of link 2
+        B_2_xy = -W_2_xy - qdd_1_t_4
+        B_2_yx = qdd_1_t_4 - W_2_xy
+        B_2_zx = -alpha_2_y - zeta_2_y
+        B_2_zy = alpha_2_x + zeta_2_x
+        # (rrrrrr-A54) acceleration of the origin of joint 3
+        a_o3_t = rrrrrr_joint3_offset_x*(W_2_t_2 + W_2_t_3)
+        a_o3_t_2 = B_2_yx*rrrrrr_joint3_offset_x
+        a_o3_t_3 = B_2_zx*rrrrrr_joint3_offset_x
+        # (rrrrrr-A38) angular acceleration of link 3
+        alpha_3_x = alpha_2_x*c_3 + alpha_2_y*s_3 - zeta_3_x
+        alpha_3_y = zeta_3_y + alpha_2_y*c_3 - alpha_2_x*s_3
+        alpha_3_z = qdd_1_t_3 + qdd_1_t_4
+        # (rrrrrr-A40) acceleration tensor of link 3
+        B_3_xy = W_3_xy - alpha_3_z
+        B_3_xz = W_3_xz + alpha_3_y
+        B_3_yx = W_3_xy + alpha_3_z
+        B_3_yz = W_3_yz - alpha_3_x
+        B_3_zx = W_3_xz - alpha_3_y
+        B_3_zy = W_3_yz + alpha_3_x
+        # (rrrrrr-A54) acceleration of the origin of joint 3
+        a_o3_r0_x = a_o3_t_2*s_3 - a_o3_t*c_3
+        a_o3_r0_y = a_o3_t*s_3 + a_o3_t_2*c_3
+        # (rrrrrr-A56) acceleration of the origin of joint 4
+        a_o4_x = a_o3_r0_x - W_3_xx*rrrrrr_joint4_offset_x
+        a_o4_y = a_o3_r0_y + B_3_yx*rrrrrr_joint4_offset_x
+        a_o4_z = a_o3_t_3 + B_3_zx*rrrrrr_joint4_offset_x
+        # (rrrrrr-N15) acceleration of the reference point of link 4, less gravity
+        acc_4_x = a_o4_z*s_4 + c_4_t*g_r4_y - a_o4_y*c_4_t - g_r1_x*s_4
+        acc_4_y = c_4_t*g_r1_x + g_r4_y*s_4 - a_o4_y*s_4 - a_o4_z*c_4_t
+        acc_4_z = a_o4_x - g_r4_x
+        # (rrrrrr-A42) angular acceleration of link 4
+        alpha_4_x = alpha_3_z*s_4 - zeta_4_x - alpha_3_y*c_4_t
+        alpha_4_y = zeta_4_y - alpha_3_y*s_4 - alpha_3_z*c_4_t
+        alpha_4_z = alpha_3_x + qdd_1_t_6
+        # (rrrrrr-A44) acceleration tensor of link 4
+        B_4_xy = W_4_xy - alpha_4_z
+        B_4_xz = W_4_xz + alpha_4_y
+        B_4_yx = W_4_xy + alpha_4_z
+        B_4_yz = W_4_yz - alpha_4_x
+        B_4_zx = W_4_xz - alpha_4_y
+        B_4_zy = W_4_yz + alpha_4_x
+        # (rrrrrr-N72) inertia moment of the links that turn with link 4, about their reference points
+        mu_4_x = (
+        B_4_yx*J_4_xz + B_4_zx*J_4_yz + B_4_zy*Sigma_4_yy - B_4_yz*Sigma_4_zz - J_4_xy*(W_4_t_2 -
+            W_4_t_3) - acc_4_y*h_4_x - acc_4_z*h_4_y
+        )
+        mu_4_y = (
+        B_4_xy*J_4_xy + B_4_xz*Sigma_4_zz + acc_4_x*h_4_x - B_4_zx*Sigma_4_xx - B_4_zy*J_4_yz -
+            J_4_xz*(W_4_t - W_4_t_3) - acc_4_z*h_4_z
+        )
+        mu_4_z = (
+        B_4_yx*Sigma_4_xx + acc_4_x*h_4_y + acc_4_y*h_4_z - B_4_xy*Sigma_4_yy - B_4_xz*J_4_xy -
+            B_4_yz*J_4_xz - J_4_yz*(W_4_t - W_4_t_2)
+        )
+        # (rrrrrr-A46) angular acceleration of link 5
+        alpha_5_x = zeta_5_x + alpha_4_z*s_5 - alpha_4_y*c_5_t
+        alpha_5_y = -zeta_5_y - alpha_4_y*s_5 - alpha_4_z*c_5_t
+        alpha_5_z = (
+        alpha_4_x + inv_w_1_t_69*(qdd_1_t_2*w_1_t_17 + qdd_1_t_3*w_1_t_28 + qdd_1_t_5*w_1_t_21 +
+            rel_y*w_1_t_16 - qdd_1_t_4*w_1_t_25 - qdd_1_t_6*w_1_t_18)
+        )
+        # (rrrrrr-A50) acceleration tensor of link 5
+        B_5_xy = W_5_xy - alpha_5_z
+        B_5_xz = W_5_xz + alpha_5_y
+        B_5_yx = W_5_xy + alpha_5_z
+        B_5_yz = W_5_yz - alpha_5_x
+        B_5_zx = W_5_xz - alpha_5_y
+        B_5_zy = W_5_yz + alpha_5_x
+        # (rrrrrr-N64) inertia moment of the links that turn with link 5, about their reference points
+        mu_5_x = (
+        B_5_yx*J_5_xz + B_5_zy*Sigma_5_yy + J_5_yz*(W_5_t_2 - W_5_t_3) + acc_5_z*h_5_y -
+            B_5_yz*Sigma_5_zz - B_5_zx*J_5_xy - acc_5_y*h_5_z
+        )
+        mu_5_y = (
+        B_5_xz*Sigma_5_zz + B_5_zy*J_5_xy + acc_5_x*h_5_z - B_5_xy*J_5_yz - B_5_zx*Sigma_5_xx -
+            J_5_xz*(W_5_t - W_5_t_3) - acc_5_z*h_5_x
+        )
+        mu_5_z = (
+        B_5_xz*J_5_yz + B_5_yx*Sigma_5_xx + J_5_xy*(W_5_t - W_5_t_2) + acc_5_y*h_5_x -
+            B_5_xy*Sigma_5_yy - B_5_yz*J_5_xz - acc_5_x*h_5_y
+        )
+        # (rrrrrr-N74) moment about joint 4 of the links from 4 outwards, the force at the connection point left out
+        N_4_x = mu_4_x + mu_5_z
+        N_4_y = mu_4_y - c_5_t*mu_5_x - mu_5_y*s_5
+        N_4_z = mu_4_z + mu_5_x*s_5 - c_5_t*mu_5_y
+        # (rrrrrr-N19) inertia force of link 4 less its weight
+        f_4_x = (
+        B_4_xz*h_4_x + acc_4_x*rrrrrr_link4_mass - B_4_xy*h_4_y - h_4_z*(W_4_t_2 + W_4_t_3)
+        )
+        f_4_y = B_4_yx*h_4_z + B_4_yz*h_4_x + acc_4_y*rrrrrr_link4_mass + h_4_y*(W_4_t + W_4_t_3)
+        f_4_z = B_4_zx*h_4_z + acc_4_z*rrrrrr_link4_mass - B_4_zy*h_4_y - h_4_x*(W_4_t + W_4_t_2)
+        # (rrrrrr-N9) acceleration of the reference point of link 3, less gravity
+        acc_3_x = a_o3_r0_x - g_r4_x
+        acc_3_y = a_o3_r0_y - g_r4_y
+        acc_3_z = a_o3_t_3 - g_r1_x
+        # (rrrrrr-N82) inertia moment of the links that turn with link 3, about their reference points
+        mu_3_x = (
+        B_3_yx*J_3_xz + B_3_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) + acc_3_z*h_3_y -
+            B_3_yz*Sigma_3_zz - B_3_zx*J_3_xy - acc_3_y*h_3_z
+        )
+        mu_3_y = (
+        B_3_xz*Sigma_3_zz + B_3_zy*J_3_xy + acc_3_x*h_3_z - B_3_xy*J_3_yz - B_3_zx*Sigma_3_xx -
+            J_3_xz*(W_3_t - W_3_t_3) - acc_3_z*h_3_x
+        )
+        mu_3_z = (
+        B_3_xz*J_3_yz + B_3_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + acc_3_y*h_3_x -
+            B_3_xy*Sigma_3_yy - B_3_yz*J_3_xz - acc_3_x*h_3_y
+        )
+        # (rrrrrr-N19) inertia force of link 4 less its weight
+        f_4_r0_x = -c_4_t*f_4_x - f_4_y*s_4
+        f_4_r0_y = f_4_x*s_4 - c_4_t*f_4_y
+        # (rrrrrr-N84) moment about joint 3 of the links from 3 outwards, the force at the connection point left out
+        N_3_x = N_4_z + mu_3_x
+        N_3_y = mu_3_y - N_4_x*c_4_t - N_4_y*s_4 - f_4_r0_y*rrrrrr_joint4_offset_x
+        N_3_z = mu_3_z + N_4_x*s_4 + f_4_r0_x*rrrrrr_joint4_offset_x - N_4_y*c_4_t
+        # (rrrrrr-N13) inertia force of link 3 less its weight
+        f_3_x = B_3_xy*h_3_y + B_3_xz*h_3_z + acc_3_x*rrrrrr_link3_mass - W_3_xx*h_3_x
+        f_3_y = B_3_yx*h_3_x + B_3_yz*h_3_z + acc_3_y*rrrrrr_link3_mass - h_3_y*(W_3_t + W_3_t_3)
+        f_3_z = B_3_zx*h_3_x + B_3_zy*h_3_y + acc_3_z*rrrrrr_link3_mass - h_3_z*(W_3_t + W_3_t_2)
+        # (rrrrrr-N86) inertia force of the links from 3 outwards, the last link left out
+        T_3_x = f_3_x + f_4_z
+        T_3_y = f_3_y + f_4_r0_x
+        T_3_z = f_3_z + f_4_r0_y
+        # (rrrrrr-N94) inertia moment of the links that turn with link 2, about their reference points
+        mu_2_x = (
+        B_2_yx*J_2_xz + B_2_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) + g_r3_y*h_2_z -
+            B_2_zx*J_2_xy - Sigma_2_zz*alpha_1_t - g_r1_x*h_2_y
+        )
+        mu_2_y = (
+        B_2_zy*J_2_xy + Sigma_2_zz*alpha_1_t_2 + g_r1_x*h_2_x - B_2_xy*J_2_yz - B_2_zx*Sigma_2_xx
+            - J_2_xz*(W_2_t - W_2_t_3) - g_r3_x*h_2_z
+        )
+        mu_2_z = (
+        B_2_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + J_2_yz*alpha_1_t_2 + g_r3_x*h_2_y -
+            B_2_xy*Sigma_2_yy - J_2_xz*alpha_1_t - g_r3_y*h_2_x
+        )
+        # (rrrrrr-N96) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        N_2_x = mu_2_x + N_3_x*c_3 - N_3_y*s_3
+        N_2_y = mu_2_y + N_3_x*s_3 + N_3_y*c_3 - T_3_z*rrrrrr_joint3_offset_x
+        N_2_z = N_3_z + mu_2_z + rrrrrr_joint3_offset_x*(T_3_x*s_3 + T_3_y*c_3)
+        # (rrrrrr-N106) inertia moment of the links that turn with link 1, about their reference points
+        mu_1_z = -J_1_xx*qdd_1_t_5 - g_r1_x*h_1_y - g_r1_y*h_1_z
+        # (rrrrrr-N108) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        N_1_z = mu_1_z + N_2_x*s_2 - N_2_y*c_2_t
+        # (rrrrrr-N114) force at the connection point that balances the leg's inertia and weight along all freedoms
+        G_t = inv_w_1_t_69*mu_5_z
+        G_t_2 = inv_w_1_t_101*(G_t*w_1_t_18 - N_4_z)
+        G_t_3 = inv_w_1_t_150*(G_t*w_1_t_21 + G_t_2*w_1_t_36 - N_1_z)
+        G_t_4 = inv_w_1_t_194*(G_t*w_1_t_25 + G_t_2*w_1_t_42 - N_2_z - G_t_3*w_1_t_58)
+        G_t_5 = (
+        inv_w_1_t_222*(N_3_z + G_t*w_1_t_28 + G_t_3*w_1_t_64 + G_t_4*w_1_t_76 - G_t_2*w_1_t_47)
+        )
+        G_t_6 = size*(G_t_2*w_1_t_34 + G_t_3*w_1_t_56 + G_t_4*w_1_t_74 - G_t_5*w_1_t_86)
+        G_t_7 = (
+        size*(G_t_2*w_1_t_35 + G_t_3*w_1_t_57 + G_t_4*w_1_t_75 - G_t*w_1_t_17 - G_t_5*w_1_t_87)
+        )
+        # (rrrrrr-N130) leg force on the platform without actuation and without the mass at the connection point
+        c_x = (
+        G_t_3*w_1_t_53 + G_t_4*w_1_t_71 + W_5_xx*h_5_x - B_5_xy*h_5_y - B_5_xz*h_5_z -
+            G_t_5*w_1_t_83
+        )
+        c_y = (
+        G_t_5*w_1_t_84 + h_5_y*(W_5_t + W_5_t_3) - B_5_yx*h_5_x - B_5_yz*h_5_z - G_t*w_1_t_16 -
+            G_t_2*w_1_t_32 - G_t_3*w_1_t_54 - G_t_4*w_1_t_72
+        )
+        c_z = (
+        G_t_2*w_1_t_33 + G_t_3*w_1_t_55 + G_t_4*w_1_t_73 + h_5_z*(W_5_t + W_5_t_2) - B_5_zx*h_5_x
+            - B_5_zy*h_5_y - G_t_5*w_1_t_85
+        )
+        # (rrrrrr-N140) leg force on the platform without actuation, the last link's mass included
+        c_true_x = c_x - acc_5_x*rrrrrr_link5_mass
+        c_true_y = c_y - acc_5_y*rrrrrr_link5_mass
+        c_true_z = c_z - acc_5_z*rrrrrr_link5_mass
+        c_true_in_base_x = (
+        axis_x_rrrrrr_axes5_x*c_true_x + axis_y_rrrrrr_axes5_in_base_x*c_true_y +
+            axis_z_rrrrrr_axes5_in_base_x*c_true_z
+        )
+        c_true_in_base_y = (
+        axis_x_rrrrrr_axes5_y*c_true_x + axis_y_rrrrrr_axes5_in_base_y*c_true_y +
+            axis_z_rrrrrr_axes5_in_base_y*c_true_z
+        )
+        c_true_in_base_z = (
+        axis_x_rrrrrr_axes5_z*c_true_x + axis_y_rrrrrr_axes5_in_base_z*c_true_y +
+            axis_z_rrrrrr_axes5_in_base_z*c_true_z
+        )
+        # (rrrrrr-N126) moment at the connection point that balances the leg's inertia and weight along all freedoms
+        G_m_t = G_t_6*end_p1_r8_y
+        G_m_t_2 = G_t_7*end_p1_r8_y
+        G_m_y = G_t_7*end_p1_r6_x - G_t_6*end_p1_r8_x
+        # (rrrrrr-N135) moment of the leg on the platform without actuation
+        c_m_in_base_x = (
+        G_m_t_2*axis_z_rrrrrr_axes5_in_base_x - G_m_t*axis_x_rrrrrr_axes5_x -
+            G_m_y*axis_y_rrrrrr_axes5_in_base_x
+        )
+        c_m_in_base_y = (
+        G_m_t_2*axis_z_rrrrrr_axes5_in_base_y - G_m_t*axis_x_rrrrrr_axes5_y -
+            G_m_y*axis_y_rrrrrr_axes5_in_base_y
+        )
+        c_m_in_base_z = (
+        G_m_t_2*axis_z_rrrrrr_axes5_in_base_z - G_m_t*axis_x_rrrrrr_axes5_z -
+            G_m_y*axis_y_rrrrrr_axes5_in_base_z
+        )
+        # (rrrrrr-V29) moment part of reciprocal wrench 2
+        o_2_in_base_x = (
+        axis_y_rrrrrr_axes5_in_base_x*o_2_y + axis_z_rrrrrr_axes5_in_base_x*o_2_t_2 -
+            axis_x_rrrrrr_axes5_x*o_2_t
+        )
+        o_2_in_base_y = (
+        axis_y_rrrrrr_axes5_in_base_y*o_2_y + axis_z_rrrrrr_axes5_in_base_y*o_2_t_2 -
+            axis_x_rrrrrr_axes5_y*o_2_t
+        )
+        o_2_in_base_z = (
+        axis_y_rrrrrr_axes5_in_base_z*o_2_y + axis_z_rrrrrr_axes5_in_base_z*o_2_t_2 -
+            axis_x_rrrrrr_axes5_z*o_2_t
+        )
+        ok = (
+        ok & m.every((abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE * size) &
+            (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
+            (abs(w_1_t_82) > _TOLERANCE * size))
+        )
+        out_leg_force[[0, 6, 12, 18, 24, 30][leg]] = c_true_in_base_x
+        out_leg_force[[1, 7, 13, 19, 25, 31][leg]] = c_true_in_base_y
+        out_leg_force[[2, 8, 14, 20, 26, 32][leg]] = c_true_in_base_z
+        out_leg_force[[3, 9, 15, 21, 27, 33][leg]] = c_m_in_base_x
+        out_leg_force[[4, 10, 16, 22, 28, 34][leg]] = c_m_in_base_y
+        out_leg_force[[5, 11, 17, 23, 29, 35][leg]] = c_m_in_base_z
+        out_drive[[0, 6, 12, 18, 24, 30][leg]] = w_2_in_base_x
+        out_drive[[1, 7, 13, 19, 25, 31][leg]] = w_2_in_base_y
+        out_drive[[2, 8, 14, 20, 26, 32][leg]] = w_2_in_base_z
+        out_drive[[3, 9, 15, 21, 27, 33][leg]] = o_2_in_base_x
+        out_drive[[4, 10, 16, 22, 28, 34][leg]] = o_2_in_base_y
+        out_drive[[5, 11, 17, 23, 29, 35][leg]] = o_2_in_base_z
+    return ok, (out_leg_force, out_drive,)
 
 
 # potential: 393 mul, 360 add, 0 div, 0 sqrt, 60 trig
-def _potential_before(c, X, q, f):
-    gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star = c
+def _run_potential(m, X, q):
+    sin = m.sin
+    cos = m.cos
+    shared, legs = m.constants("potential")
+    gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -8164,6 +8939,11 @@ def _potential_before(c, X, q, f):
     X_4 = X[4]
     X_5 = X[5]
     X_6 = X[6]
+    q_1 = q[1]
+    q_2 = q[2]
+    q_3 = q[3]
+    q_4 = q[4]
+    q_5 = q[5]
     # X: named entries
     t_x = X_0
     t_y = X_1
@@ -8191,106 +8971,115 @@ def _potential_before(c, X, q, f):
     R_zx = quaternion_xz - quaternion_wy
     R_zy = quaternion_wx + quaternion_yz
     R_zz = 1.0 - quaternion_xx - quaternion_yy
+    ok = True
+    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    out_potential = m.zeros(1)
     # (V1) potential energy
     potential_t = (
     gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + m_star*t_x) +
         gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
         gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + m_star*t_z)
     )
-    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    return (ok, (potential_t,), (),)
-
-
-def _potential_rrrrrr(c, k, x, s, f):
-    sin = f.sin
-    cos = f.cos
-    (
-    b_r0_x, b_r0_y, b_r0_z, g_r0_x, g_r0_y, g_r0_z, h_1_x, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z,
-        h_3_x, h_3_y, h_3_z, h_4_x, h_4_y, h_4_z, h_5_x, h_5_y, h_5_z, rrrrrr_joint2_offset_x,
-        rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x, rrrrrr_link1_mass, rrrrrr_link2_mass,
-        rrrrrr_link3_mass, rrrrrr_link4_mass,
-    ) = k
-    q_1, q_2, q_3, q_4, q_5 = x
-    # (rrrrrr-K10) cosine of the angle of joint 5 from its reference direction
-    c_5_t = sin(q_5)
-    # (rrrrrr-K11) sine of the angle of joint 5 from its reference direction
-    s_5 = cos(q_5)
-    # (rrrrrr-K8) cosine of the angle of joint 4 from its reference direction
-    c_4_t = sin(q_4)
-    # (rrrrrr-K9) sine of the angle of joint 4 from its reference direction
-    s_4 = cos(q_4)
-    # (rrrrrr-K6) cosine of the angle of joint 3 from its reference direction
-    c_3 = cos(q_3)
-    # (rrrrrr-K7) sine of the angle of joint 3 from its reference direction
-    s_3 = sin(q_3)
-    # (rrrrrr-K4) cosine of the angle of joint 2 from its reference direction
-    c_2_t = sin(q_2)
-    # (rrrrrr-K5) sine of the angle of joint 2 from its reference direction
-    s_2 = cos(q_2)
-    # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
-    c_1_t = sin(q_1)
-    # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
-    s_1 = cos(q_1)
-    # (rrrrrr-G9) first moment of link 4 about the origin of link 4
-    h_4_r1_x = h_4_y*s_4 - c_4_t*h_4_z
-    # (rrrrrr-N78) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
-    d_Gamma_4_t = c_5_t*h_5_x + h_5_y*s_5
-    # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-    bias_t = rrrrrr_joint2_offset_x*s_2
-    bias_t_2 = c_2_t*rrrrrr_joint2_offset_x
-    # (rrrrrr-N16) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
-    g_r1_y = -c_1_t*g_r0_y - g_r0_x*s_1
-    # (V1) potential energy
-    b_r1_x = b_r0_y*s_1 - b_r0_x*c_1_t
-    b_r1_y = -b_r0_x*s_1 - b_r0_y*c_1_t
-    b_r3_x = b_r0_z*s_2 - b_r1_y*c_2_t
-    b_r3_y = -b_r0_z*c_2_t - b_r1_y*s_2
-    potential_t_2 = b_r3_y - bias_t_2
-    # (rrrrrr-G12) first moment of link 5 about the connection point
-    h_5_r0_y = h_5_x*s_5 - c_5_t*h_5_y
-    h_5_r2_x = d_Gamma_4_t*s_4 - c_4_t*h_5_z
-    # (V1) potential energy
-    potential_t_3 = (
-    h_2_x + b_r3_x*rrrrrr_link1_mass + c_2_t*h_1_y + c_3*h_3_x + c_3*h_4_x + c_3*h_5_r0_y +
-        h_1_x*s_2 + rrrrrr_link2_mass*(b_r3_x + bias_t) + rrrrrr_link3_mass*(b_r3_x + bias_t +
-        rrrrrr_joint3_offset_x) + rrrrrr_link4_mass*(b_r3_x + bias_t + rrrrrr_joint3_offset_x +
-        c_3*rrrrrr_joint4_offset_x) - h_3_y*s_3 - h_4_r1_x*s_3 - h_5_r2_x*s_3
-    )
-    potential_t_4 = (
-    h_2_y + b_r3_y*rrrrrr_link1_mass + c_3*h_3_y + c_3*h_4_r1_x + c_3*h_5_r2_x + h_1_y*s_2 +
-        h_3_x*s_3 + h_4_x*s_3 + h_5_r0_y*s_3 + potential_t_2*rrrrrr_link2_mass +
-        potential_t_2*rrrrrr_link3_mass + rrrrrr_link4_mass*(b_r3_y + rrrrrr_joint4_offset_x*s_3 -
-        bias_t_2) - c_2_t*h_1_x
-    )
-    potential_t_5 = (
-    h_1_z + h_2_z + h_3_z + b_r1_x*rrrrrr_link1_mass + b_r1_x*rrrrrr_link2_mass +
-        b_r1_x*rrrrrr_link3_mass + b_r1_x*rrrrrr_link4_mass + c_4_t*d_Gamma_4_t + c_4_t*h_4_y +
-        h_4_z*s_4 + h_5_z*s_4
-    )
-    potential_t_6 = (
-    potential_t_3*(g_r0_z*s_2 - c_2_t*g_r1_y) + potential_t_4*(-c_2_t*g_r0_z - g_r1_y*s_2) +
-        potential_t_5*(g_r0_y*s_1 - c_1_t*g_r0_x)
-    )
-    ok = True
-    return (ok, (potential_t_6,), (),)
-
-
-def _potential_after(c, s, t, f):
-    potential_t, = s
-    total_rrrrrr, = t
+    sums = [0.0] * 1
+    for leg, k in legs[0]:
+        (
+        b_r0_x, b_r0_y, b_r0_z, g_r0_x, g_r0_y, g_r0_z, h_1_x, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z,
+            h_3_x, h_3_y, h_3_z, h_4_x, h_4_y, h_4_z, h_5_x, h_5_y, h_5_z, rrrrrr_joint2_offset_x,
+            rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x, rrrrrr_link1_mass, rrrrrr_link2_mass,
+            rrrrrr_link3_mass, rrrrrr_link4_mass,
+        ) = k
+        q_1 = q[[0, 5, 10, 15, 20, 25][leg]]
+        q_2 = q[[1, 6, 11, 16, 21, 26][leg]]
+        q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
+        q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
+        q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
+        # (rrrrrr-K10) cosine of the angle of joint 5 from its reference direction
+        c_5_t = sin(q_5)
+        # (rrrrrr-K11) sine of the angle of joint 5 from its reference direction
+        s_5 = cos(q_5)
+        # (rrrrrr-K8) cosine of the angle of joint 4 from its reference direction
+        c_4_t = sin(q_4)
+        # (rrrrrr-K9) sine of the angle of joint 4 from its reference direction
+        s_4 = cos(q_4)
+        # (rrrrrr-K6) cosine of the angle of joint 3 from its reference direction
+        c_3 = cos(q_3)
+        # (rrrrrr-K7) sine of the angle of joint 3 from its reference direction
+        s_3 = sin(q_3)
+        # (rrrrrr-K4) cosine of the angle of joint 2 from its reference direction
+        c_2_t = sin(q_2)
+        # (rrrrrr-K5) sine of the angle of joint 2 from its reference direction
+        s_2 = cos(q_2)
+        # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
+        c_1_t = sin(q_1)
+        # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
+        s_1 = cos(q_1)
+        # (rrrrrr-G9) first moment of link 4 about the origin of link 4
+        h_4_r1_x = h_4_y*s_4 - c_4_t*h_4_z
+        # (rrrrrr-N78) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
+        d_Gamma_4_t = c_5_t*h_5_x + h_5_y*s_5
+        # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
+        bias_t = rrrrrr_joint2_offset_x*s_2
+        bias_t_2 = c_2_t*rrrrrr_joint2_offset_x
+        # (rrrrrr-N16) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
+        g_r1_y = -c_1_t*g_r0_y - g_r0_x*s_1
+        # (V1) potential energy
+        b_r1_x = b_r0_y*s_1 - b_r0_x*c_1_t
+        b_r1_y = -b_r0_x*s_1 - b_r0_y*c_1_t
+        b_r3_x = b_r0_z*s_2 - b_r1_y*c_2_t
+        b_r3_y = -b_r0_z*c_2_t - b_r1_y*s_2
+        potential_t_2 = b_r3_y - bias_t_2
+        # (rrrrrr-G12) first moment of link 5 about the connection point
+        h_5_r0_y = h_5_x*s_5 - c_5_t*h_5_y
+        h_5_r2_x = d_Gamma_4_t*s_4 - c_4_t*h_5_z
+        # (V1) potential energy
+        potential_t_3 = (
+        h_2_x + b_r3_x*rrrrrr_link1_mass + c_2_t*h_1_y + c_3*h_3_x + c_3*h_4_x + c_3*h_5_r0_y +
+            h_1_x*s_2 + rrrrrr_link2_mass*(b_r3_x + bias_t) + rrrrrr_link3_mass*(b_r3_x + bias_t +
+            rrrrrr_joint3_offset_x) + rrrrrr_link4_mass*(b_r3_x + bias_t + rrrrrr_joint3_offset_x
+            + c_3*rrrrrr_joint4_offset_x) - h_3_y*s_3 - h_4_r1_x*s_3 - h_5_r2_x*s_3
+        )
+        potential_t_4 = (
+        h_2_y + b_r3_y*rrrrrr_link1_mass + c_3*h_3_y + c_3*h_4_r1_x + c_3*h_5_r2_x + h_1_y*s_2 +
+            h_3_x*s_3 + h_4_x*s_3 + h_5_r0_y*s_3 + potential_t_2*rrrrrr_link2_mass +
+            potential_t_2*rrrrrr_link3_mass + rrrrrr_link4_mass*(b_r3_y +
+            rrrrrr_joint4_offset_x*s_3 - bias_t_2) - c_2_t*h_1_x
+        )
+        potential_t_5 = (
+        h_1_z + h_2_z + h_3_z + b_r1_x*rrrrrr_link1_mass + b_r1_x*rrrrrr_link2_mass +
+            b_r1_x*rrrrrr_link3_mass + b_r1_x*rrrrrr_link4_mass + c_4_t*d_Gamma_4_t + c_4_t*h_4_y
+            + h_4_z*s_4 + h_5_z*s_4
+        )
+        potential_t_6 = (
+        potential_t_3*(g_r0_z*s_2 - c_2_t*g_r1_y) + potential_t_4*(-c_2_t*g_r0_z - g_r1_y*s_2) +
+            potential_t_5*(g_r0_y*s_1 - c_1_t*g_r0_x)
+        )
+        sums = m.added(sums, leg, (
+        potential_t_6,
+        ))
+    total_rrrrrr, = sums
     # (V1) potential energy
     potential = -potential_t - total_rrrrrr
-    ok = True
-    return (ok, (potential,),)
+    out_potential[0] = potential
+    return ok, (out_potential,)
 
 
 # condition: 2239 mul, 1332 add, 30 div, 31 sqrt, 60 trig
-def _condition_before(c, X, q, f):
-    legs_size, = c
+def _run_condition(m, X, q):
+    sqrt = m.sqrt
+    sin = m.sin
+    cos = m.cos
+    least = m.least
+    shared, legs = m.constants("condition")
+    b_c_x, b_c_y, b_c_z, legs_size, spread_t = shared
     X_3 = X[3]
     X_4 = X[4]
     X_5 = X[5]
     X_6 = X[6]
+    q_1 = q[1]
+    q_2 = q[2]
+    q_3 = q[3]
+    q_4 = q[4]
+    q_5 = q[5]
     # X: named entries
     quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6
     quaternion_scale = 2.0/quaternion_norm2
@@ -8315,381 +9104,402 @@ def _condition_before(c, X, q, f):
     R_zx = quaternion_xz - quaternion_wy
     R_zy = quaternion_wx + quaternion_yz
     R_zz = 1.0 - quaternion_xx - quaternion_yy
-    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    return (ok, (R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz,), (legs_size,),)
-
-
-def _condition_rrrrrr(c, k, x, s, f):
-    sqrt = f.sqrt
-    sin = f.sin
-    cos = f.cos
-    least = f.least
-    b_c_x, b_c_y, b_c_z = c
-    (
-    inv_size, rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz,
-        rrrrrr_base_frame_yx, rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx,
-        rrrrrr_base_frame_zy, rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x,
-        rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x,
-        rrrrrr_platform_joint_axis_platform_x, rrrrrr_platform_joint_axis_platform_y,
-        rrrrrr_platform_joint_axis_platform_z, rrrrrr_platform_joint_offset_x,
-        rrrrrr_platform_point_x, rrrrrr_platform_point_y, rrrrrr_platform_point_z, size, size_t,
-    ) = k
-    q_1, q_2, q_3, q_4, q_5 = x
-    R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
-    # (rrrrrr-K10) cosine of the angle of joint 5 from its reference direction
-    c_5_t = sin(q_5)
-    # (rrrrrr-K11) sine of the angle of joint 5 from its reference direction
-    s_5 = cos(q_5)
-    # (rrrrrr-V2) from joint 4 to the connection point, along the links
-    r_4_t = c_5_t*rrrrrr_platform_joint_offset_x
-    r_4_z = rrrrrr_joint5_offset_x + rrrrrr_platform_joint_offset_x*s_5
-    # (rrrrrr-K8) cosine of the angle of joint 4 from its reference direction
-    c_4_t = sin(q_4)
-    # (rrrrrr-K9) sine of the angle of joint 4 from its reference direction
-    s_4 = cos(q_4)
-    # (rrrrrr-V2) from joint 4 to the connection point, along the links
-    r_4_t_2 = r_4_t*s_4
-    r_4_t_3 = c_4_t*r_4_t
-    # (rrrrrr-V3) from joint 3 to the connection point, along the links
-    r_3_x = r_4_z + rrrrrr_joint4_offset_x
-    # (rrrrrr-K6) cosine of the angle of joint 3 from its reference direction
-    c_3 = cos(q_3)
-    # (rrrrrr-K7) sine of the angle of joint 3 from its reference direction
-    s_3 = sin(q_3)
-    # (rrrrrr-V3) from joint 3 to the connection point, along the links
-    r_3_r0_y = c_3*r_4_t_2 + r_3_x*s_3
-    # (rrrrrr-V4) from joint 2 to the connection point, along the links
-    r_2_x = rrrrrr_joint3_offset_x + c_3*r_3_x - r_4_t_2*s_3
-    # (rrrrrr-K4) cosine of the angle of joint 2 from its reference direction
-    c_2_t = sin(q_2)
-    # (rrrrrr-K5) sine of the angle of joint 2 from its reference direction
-    s_2 = cos(q_2)
-    # (rrrrrr-V4) from joint 2 to the connection point, along the links
-    r_2_r0_x = -c_2_t*r_2_x - r_3_r0_y*s_2
-    # (rrrrrr-V5) from joint 1 to the connection point, along the links
-    r_1_z = rrrrrr_joint2_offset_x + r_2_x*s_2 - c_2_t*r_3_r0_y
-    # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-    e_1_r2_x = c_3*s_2 - c_2_t*s_3
-    e_1_r2_y = -c_2_t*c_3 - s_2*s_3
-    v_1_t = c_4_t*e_1_r2_y
-    v_1_t_2 = e_1_r2_y*s_4
-    e_1_r6_x = c_5_t*v_1_t_2 + e_1_r2_x*s_5
-    e_1_r6_y = s_5*v_1_t_2 - c_5_t*e_1_r2_x
-    # (rrrrrr-V5) from joint 1 to the connection point, along the links
-    r_1_r1_x = r_1_z*s_2 - c_2_t*r_2_r0_x
-    r_1_r1_y = -c_2_t*r_1_z - r_2_r0_x*s_2
-    r_1_r2_x = c_3*r_1_r1_x + r_1_r1_y*s_3
-    r_1_r2_y = c_3*r_1_r1_y - r_1_r1_x*s_3
-    r_1_t = r_4_t_3*s_4
-    r_1_r4_x = r_1_t - c_4_t*r_1_r2_y
-    r_1_t_2 = c_4_t*r_4_t_3
-    r_1_r4_y = -r_1_t_2 - r_1_r2_y*s_4
-    r_1_r6_x = r_1_r2_x*s_5 - c_5_t*r_1_r4_y
-    r_1_r6_y = -c_5_t*r_1_r2_x - r_1_r4_y*s_5
-    # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-    v_1_x = e_1_r6_y*r_1_r4_x + r_1_r6_y*v_1_t
-    v_1_y = -e_1_r6_x*r_1_r4_x - r_1_r6_x*v_1_t
-    v_1_z = e_1_r6_x*r_1_r6_y - e_1_r6_y*r_1_r6_x
-    # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-    v_2_t = c_4_t*c_5_t
-    v_2_t_2 = c_4_t*s_5
-    # (rrrrrr-V4) from joint 2 to the connection point, along the links
-    r_2_r0_x_2 = c_3*r_2_x + r_3_r0_y*s_3
-    r_2_r0_y = c_3*r_3_r0_y - r_2_x*s_3
-    r_2_r2_x = r_1_t - c_4_t*r_2_r0_y
-    r_2_r2_y = -r_1_t_2 - r_2_r0_y*s_4
-    r_2_r4_x = r_2_r0_x_2*s_5 - c_5_t*r_2_r2_y
-    r_2_r4_y = -c_5_t*r_2_r0_x_2 - r_2_r2_y*s_5
-    # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-    v_2_x = r_2_r2_x*v_2_t_2 - r_2_r4_y*s_4
-    v_2_y = r_2_r4_x*s_4 - r_2_r2_x*v_2_t
-    v_2_z = r_2_r4_y*v_2_t - r_2_r4_x*v_2_t_2
-    # (rrrrrr-V3) from joint 3 to the connection point, along the links
-    r_3_r1_x = r_1_t - c_4_t*r_4_t_2
-    r_3_r1_y = -r_1_t_2 - r_4_t_2*s_4
-    r_3_r3_x = r_3_x*s_5 - c_5_t*r_3_r1_y
-    r_3_r3_y = -c_5_t*r_3_x - r_3_r1_y*s_5
-    # (rrrrrr-V8) velocity of the connection point per rate of joint 3
-    v_3_x = r_3_r1_x*v_2_t_2 - r_3_r3_y*s_4
-    v_3_y = r_3_r3_x*s_4 - r_3_r1_x*v_2_t
-    v_3_z = r_3_r3_y*v_2_t - r_3_r3_x*v_2_t_2
-    # (rrrrrr-V9) velocity of the connection point per rate of joint 4
-    v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t = c_4_t*s_3
-    w_1_t_2 = c_3*c_4_t
-    axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_2 - c_2_t*w_1_t
-    axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_2 + s_2*w_1_t
-    # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
-    c_1_t = sin(q_1)
-    # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
-    s_1 = cos(q_1)
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    axis_z_rrrrrr_axes5_r7_x = -axis_z_rrrrrr_axes5_r5_x*s_1 - c_1_t*s_4
-    axis_z_rrrrrr_axes5_r7_y = s_1*s_4 - axis_z_rrrrrr_axes5_r5_x*c_1_t
-    axis_z_rrrrrr_axes5_in_base_x = (
-    axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx + axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy
-        + axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
-    )
-    axis_z_rrrrrr_axes5_in_base_y = (
-    axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx + axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy
-        + axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
-    )
-    axis_z_rrrrrr_axes5_in_base_z = (
-    axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx + axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy
-        + axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
-    )
-    w_1_t_3 = s_4*s_5
-    axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_3
-    axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_3 - c_5_t*s_3
-    axis_y_rrrrrr_axes5_r5_x = -axis_y_rrrrrr_axes5_r4_x*c_2_t - axis_y_rrrrrr_axes5_r4_y*s_2
-    axis_y_rrrrrr_axes5_r5_y = axis_y_rrrrrr_axes5_r4_x*s_2 - axis_y_rrrrrr_axes5_r4_y*c_2_t
-    axis_y_rrrrrr_axes5_r7_x = -axis_y_rrrrrr_axes5_r5_x*s_1 - c_1_t*v_2_t_2
-    axis_y_rrrrrr_axes5_r7_y = s_1*v_2_t_2 - axis_y_rrrrrr_axes5_r5_x*c_1_t
-    axis_y_rrrrrr_axes5_in_base_x = (
-    axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx + axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy
-        + axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
-    )
-    axis_y_rrrrrr_axes5_in_base_y = (
-    axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx + axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy
-        + axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
-    )
-    axis_y_rrrrrr_axes5_in_base_z = (
-    axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx + axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy
-        + axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
-    )
-    axis_x_rrrrrr_axes5_x = (
-    axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_z -
-        axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_y
-    )
-    axis_x_rrrrrr_axes5_y = (
-    axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_x -
-        axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_z
-    )
-    axis_x_rrrrrr_axes5_z = (
-    axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_y -
-        axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_x
-    )
-    # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
-    end_p1_r0_x = (
-    rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xy + R_yx*rrrrrr_base_frame_yy +
-        R_zx*rrrrrr_base_frame_zy) +
-        rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xy +
-        R_yy*rrrrrr_base_frame_yy + R_zy*rrrrrr_base_frame_zy) +
-        rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xy +
-        R_yz*rrrrrr_base_frame_yy + R_zz*rrrrrr_base_frame_zy)
-    )
-    end_p1_r0_y = (
-    rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xz + R_yx*rrrrrr_base_frame_yz +
-        R_zx*rrrrrr_base_frame_zz) +
-        rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xz +
-        R_yy*rrrrrr_base_frame_yz + R_zy*rrrrrr_base_frame_zz) +
-        rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xz +
-        R_yz*rrrrrr_base_frame_yz + R_zz*rrrrrr_base_frame_zz)
-    )
-    end_p1_r0_z = (
-    rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xx + R_yx*rrrrrr_base_frame_yx +
-        R_zx*rrrrrr_base_frame_zx) +
-        rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xx +
-        R_yy*rrrrrr_base_frame_yx + R_zy*rrrrrr_base_frame_zx) +
-        rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xx +
-        R_yz*rrrrrr_base_frame_yx + R_zz*rrrrrr_base_frame_zx)
-    )
-    end_p1_r1_x = end_p1_r0_y*s_1 - c_1_t*end_p1_r0_x
-    end_p1_r1_y = -c_1_t*end_p1_r0_y - end_p1_r0_x*s_1
-    end_p1_r3_x = end_p1_r0_z*s_2 - c_2_t*end_p1_r1_y
-    end_p1_r3_y = -c_2_t*end_p1_r0_z - end_p1_r1_y*s_2
-    end_p1_r4_x = c_3*end_p1_r3_x + end_p1_r3_y*s_3
-    end_p1_r4_y = c_3*end_p1_r3_y - end_p1_r3_x*s_3
-    end_p1_r6_x = end_p1_r1_x*s_4 - c_4_t*end_p1_r4_y
-    end_p1_r6_y = -c_4_t*end_p1_r1_x - end_p1_r4_y*s_4
-    end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
-    end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_4 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
-    w_1_t_5 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
-    w_1_t_6 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
-    w_1_t_7 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
-    w_1_t_8 = size*w_1_t_4
-    w_1_t_9 = size*w_1_t_6
-    w_1_t_10 = size*w_1_t_5
-    w_1_t_11 = size*w_1_t_7
-    w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
-    w_1_t_13 = c_5_t*end_p1_r6_x*size
-    w_1_t_14 = end_p1_r8_y*size
-    w_1_t_15 = sqrt(size_t + w_1_t_14*w_1_t_14)
-    inv_w_1_t_69 = 1.0/w_1_t_15
-    w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
-    w_1_t_17 = inv_w_1_t_69*w_1_t_14
-    w_1_t_18 = w_1_t_13*w_1_t_17
-    w_1_t_19 = w_1_t_16*w_1_t_18
-    w_1_t_20 = w_1_t_13 - w_1_t_17*w_1_t_18
-    w_1_t_21 = v_1_y*w_1_t_16 - w_1_t_17*w_1_t_9
-    w_1_t_22 = v_1_y - w_1_t_16*w_1_t_21
-    w_1_t_23 = w_1_t_9 + w_1_t_17*w_1_t_21
-    w_1_t_24 = w_1_t_11*w_1_t_17
-    w_1_t_25 = v_2_y*w_1_t_16 - w_1_t_24
-    w_1_t_26 = v_2_y - w_1_t_16*w_1_t_25
-    w_1_t_27 = w_1_t_11 + w_1_t_17*w_1_t_25
-    w_1_t_28 = w_1_t_24 - v_3_y*w_1_t_16
-    w_1_t_29 = v_3_y + w_1_t_16*w_1_t_28
-    w_1_t_30 = w_1_t_11 - w_1_t_17*w_1_t_28
-    w_1_t_31 = sqrt(v_4_z*v_4_z + w_1_t_12*w_1_t_12 + w_1_t_19*w_1_t_19 + w_1_t_20*w_1_t_20)
-    inv_w_1_t_101 = 1.0/w_1_t_31
-    w_1_t_32 = inv_w_1_t_101*w_1_t_19
-    w_1_t_33 = inv_w_1_t_101*v_4_z
-    w_1_t_34 = inv_w_1_t_101*w_1_t_12
-    w_1_t_35 = inv_w_1_t_101*w_1_t_20
-    w_1_t_36 = w_1_t_22*w_1_t_32 + w_1_t_23*w_1_t_35 + w_1_t_34*w_1_t_8 - v_1_z*w_1_t_33
-    w_1_t_37 = w_1_t_32*w_1_t_36 - w_1_t_22
-    w_1_t_38 = v_1_z + w_1_t_33*w_1_t_36
-    w_1_t_39 = w_1_t_34*w_1_t_36 - w_1_t_8
-    w_1_t_40 = w_1_t_35*w_1_t_36 - w_1_t_23
-    w_1_t_41 = w_1_t_10*w_1_t_34
-    w_1_t_42 = w_1_t_41 + w_1_t_26*w_1_t_32 + w_1_t_27*w_1_t_35 - v_2_z*w_1_t_33
-    w_1_t_43 = w_1_t_32*w_1_t_42 - w_1_t_26
-    w_1_t_44 = v_2_z + w_1_t_33*w_1_t_42
-    w_1_t_45 = w_1_t_34*w_1_t_42 - w_1_t_10
-    w_1_t_46 = w_1_t_35*w_1_t_42 - w_1_t_27
-    w_1_t_47 = w_1_t_41 + w_1_t_29*w_1_t_32 + w_1_t_30*w_1_t_35 - v_3_z*w_1_t_33
-    w_1_t_48 = w_1_t_32*w_1_t_47 - w_1_t_29
-    w_1_t_49 = v_3_z + w_1_t_33*w_1_t_47
-    w_1_t_50 = w_1_t_34*w_1_t_47 - w_1_t_10
-    w_1_t_51 = w_1_t_35*w_1_t_47 - w_1_t_30
-    w_1_t_52 = (
-    sqrt(v_1_x*v_1_x + w_1_t_37*w_1_t_37 + w_1_t_38*w_1_t_38 + w_1_t_39*w_1_t_39 +
-        w_1_t_40*w_1_t_40)
-    )
-    inv_w_1_t_150 = 1.0/w_1_t_52
-    w_1_t_53 = inv_w_1_t_150*v_1_x
-    w_1_t_54 = inv_w_1_t_150*w_1_t_37
-    w_1_t_55 = inv_w_1_t_150*w_1_t_38
-    w_1_t_56 = inv_w_1_t_150*w_1_t_39
-    w_1_t_57 = inv_w_1_t_150*w_1_t_40
-    w_1_t_58 = (
-    v_2_x*w_1_t_53 + w_1_t_43*w_1_t_54 + w_1_t_44*w_1_t_55 + w_1_t_45*w_1_t_56 + w_1_t_46*w_1_t_57
-    )
-    w_1_t_59 = v_2_x - w_1_t_53*w_1_t_58
-    w_1_t_60 = w_1_t_43 - w_1_t_54*w_1_t_58
-    w_1_t_61 = w_1_t_44 - w_1_t_55*w_1_t_58
-    w_1_t_62 = w_1_t_45 - w_1_t_56*w_1_t_58
-    w_1_t_63 = w_1_t_46 - w_1_t_57*w_1_t_58
-    w_1_t_64 = (
-    v_3_x*w_1_t_53 + w_1_t_48*w_1_t_54 + w_1_t_49*w_1_t_55 + w_1_t_50*w_1_t_56 + w_1_t_51*w_1_t_57
-    )
-    w_1_t_65 = v_3_x - w_1_t_53*w_1_t_64
-    w_1_t_66 = w_1_t_48 - w_1_t_54*w_1_t_64
-    w_1_t_67 = w_1_t_49 - w_1_t_55*w_1_t_64
-    w_1_t_68 = w_1_t_50 - w_1_t_56*w_1_t_64
-    w_1_t_69 = w_1_t_51 - w_1_t_57*w_1_t_64
-    w_1_t_70 = (
-    sqrt(w_1_t_59*w_1_t_59 + w_1_t_60*w_1_t_60 + w_1_t_61*w_1_t_61 + w_1_t_62*w_1_t_62 +
-        w_1_t_63*w_1_t_63)
-    )
-    inv_w_1_t_194 = 1.0/w_1_t_70
-    w_1_t_71 = inv_w_1_t_194*w_1_t_59
-    w_1_t_72 = inv_w_1_t_194*w_1_t_60
-    w_1_t_73 = inv_w_1_t_194*w_1_t_61
-    w_1_t_74 = inv_w_1_t_194*w_1_t_62
-    w_1_t_75 = inv_w_1_t_194*w_1_t_63
-    w_1_t_76 = (
-    w_1_t_65*w_1_t_71 + w_1_t_66*w_1_t_72 + w_1_t_67*w_1_t_73 + w_1_t_68*w_1_t_74 +
-        w_1_t_69*w_1_t_75
-    )
-    w_1_t_77 = w_1_t_65 - w_1_t_71*w_1_t_76
-    w_1_t_78 = w_1_t_66 - w_1_t_72*w_1_t_76
-    w_1_t_79 = w_1_t_67 - w_1_t_73*w_1_t_76
-    w_1_t_80 = w_1_t_68 - w_1_t_74*w_1_t_76
-    w_1_t_81 = w_1_t_69 - w_1_t_75*w_1_t_76
-    w_1_t_82 = (
-    sqrt(w_1_t_77*w_1_t_77 + w_1_t_78*w_1_t_78 + w_1_t_79*w_1_t_79 + w_1_t_80*w_1_t_80 +
-        w_1_t_81*w_1_t_81)
-    )
-    inv_w_1_t_222 = 1.0/w_1_t_82
-    # (rrrrrr-V16) force part of reciprocal wrench 2
-    w_2_t = inv_w_1_t_194*inv_w_1_t_222*w_1_t_76
-    w_2_t_2 = inv_w_1_t_194*w_1_t_71 - inv_w_1_t_222*w_1_t_77*w_2_t
-    w_2_t_3 = inv_w_1_t_194*w_1_t_72 - inv_w_1_t_222*w_1_t_78*w_2_t
-    w_2_t_4 = inv_w_1_t_222*w_1_t_79*w_2_t - inv_w_1_t_194*w_1_t_73
-    w_2_t_5 = size*(inv_w_1_t_194*w_1_t_74 - inv_w_1_t_222*w_1_t_80*w_2_t)
-    w_2_t_6 = size*(inv_w_1_t_194*w_1_t_75 - inv_w_1_t_222*w_1_t_81*w_2_t)
-    # (M2) coupling block of M
-    q_in_base_x = (
-    R_xx*rrrrrr_platform_point_x + R_xy*rrrrrr_platform_point_y + R_xz*rrrrrr_platform_point_z
-    )
-    q_in_base_y = (
-    R_yx*rrrrrr_platform_point_x + R_yy*rrrrrr_platform_point_y + R_yz*rrrrrr_platform_point_z
-    )
-    q_in_base_z = (
-    R_zx*rrrrrr_platform_point_x + R_zy*rrrrrr_platform_point_y + R_zz*rrrrrr_platform_point_z
-    )
-    # (rrrrrr-V16) force part of reciprocal wrench 2
-    w_2_in_base_x = (
-    axis_x_rrrrrr_axes5_x*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_x*w_2_t_3 -
-        axis_z_rrrrrr_axes5_in_base_x*w_2_t_4
-    )
-    w_2_in_base_y = (
-    axis_x_rrrrrr_axes5_y*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_y*w_2_t_3 -
-        axis_z_rrrrrr_axes5_in_base_y*w_2_t_4
-    )
-    w_2_in_base_z = (
-    axis_x_rrrrrr_axes5_z*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_z*w_2_t_3 -
-        axis_z_rrrrrr_axes5_in_base_z*w_2_t_4
-    )
-    # (rrrrrr-V29) moment part of reciprocal wrench 2
-    o_2_x = (
-    w_2_t_5*(axis_y_rrrrrr_axes5_in_base_x*end_p1_r8_x - axis_x_rrrrrr_axes5_x*end_p1_r8_y) +
-        w_2_t_6*(axis_z_rrrrrr_axes5_in_base_x*end_p1_r8_y -
-        axis_y_rrrrrr_axes5_in_base_x*end_p1_r6_x)
-    )
-    o_2_y = (
-    w_2_t_5*(axis_y_rrrrrr_axes5_in_base_y*end_p1_r8_x - axis_x_rrrrrr_axes5_y*end_p1_r8_y) +
-        w_2_t_6*(axis_z_rrrrrr_axes5_in_base_y*end_p1_r8_y -
-        axis_y_rrrrrr_axes5_in_base_y*end_p1_r6_x)
-    )
-    o_2_z = (
-    w_2_t_5*(axis_y_rrrrrr_axes5_in_base_z*end_p1_r8_x - axis_x_rrrrrr_axes5_z*end_p1_r8_y) +
-        w_2_t_6*(axis_z_rrrrrr_axes5_in_base_z*end_p1_r8_y -
-        axis_y_rrrrrr_axes5_in_base_z*end_p1_r6_x)
-    )
-    # (M8) moment of the column's unit force about the platform origin
-    H_a_2_x = o_2_x + q_in_base_y*w_2_in_base_z - q_in_base_z*w_2_in_base_y
-    H_a_2_y = o_2_y + q_in_base_z*w_2_in_base_x - q_in_base_x*w_2_in_base_z
-    H_a_2_z = o_2_z + q_in_base_x*w_2_in_base_y - q_in_base_y*w_2_in_base_x
-    # (C2) rms distance of the platform points from their centroid
-    spread_t_2 = b_c_x - rrrrrr_platform_point_x
-    spread_t_3 = b_c_y - rrrrrr_platform_point_y
-    spread_t_4 = b_c_z - rrrrrr_platform_point_z
-    spread_t_5 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3 + spread_t_4*spread_t_4
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    pivot_size = abs(w_1_t_15)
-    pivot_size_2 = abs(w_1_t_31)
-    pivot_size_3 = abs(w_1_t_52)
-    pivot_size_4 = abs(w_1_t_70)
-    pivot_size_5 = abs(w_1_t_82)
-    least_pivots = (
-    least(least(least(least(inv_size*pivot_size, inv_size*pivot_size_2), inv_size*pivot_size_3),
-        inv_size*pivot_size_4), inv_size*pivot_size_5)
-    )
-    ok = (abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE * size) & (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) & (abs(w_1_t_82) > _TOLERANCE * size)
-    return (
-    ok, (spread_t_5,), (w_2_in_base_x, w_2_in_base_y, w_2_in_base_z, H_a_2_x, H_a_2_y, H_a_2_z,
-        least_pivots,),
-    )
-
-
-def _condition_after(c, s, t, f):
-    sqrt = f.sqrt
-    spread_t, = c
-    total_rrrrrr, = t
+    valid = True
+    reached = True
+    clear = True
+    valid = valid & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    out_H = m.zeros(36)
+    out_lengths = m.zeros(2)
+    out_pivots = m.zeros(6)
+    out_reach = m.zeros(6)
+    out_lengths[1] = legs_size
+    sums = [0.0] * 1
+    for leg, k in legs[0]:
+        (
+        inv_size, rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz,
+            rrrrrr_base_frame_yx, rrrrrr_base_frame_yy, rrrrrr_base_frame_yz,
+            rrrrrr_base_frame_zx, rrrrrr_base_frame_zy, rrrrrr_base_frame_zz,
+            rrrrrr_joint2_offset_x, rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x,
+            rrrrrr_joint5_offset_x, rrrrrr_platform_joint_axis_platform_x,
+            rrrrrr_platform_joint_axis_platform_y, rrrrrr_platform_joint_axis_platform_z,
+            rrrrrr_platform_joint_offset_x, rrrrrr_platform_point_x, rrrrrr_platform_point_y,
+            rrrrrr_platform_point_z, size, size_t,
+        ) = k
+        q_1 = q[[0, 5, 10, 15, 20, 25][leg]]
+        q_2 = q[[1, 6, 11, 16, 21, 26][leg]]
+        q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
+        q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
+        q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
+        # (rrrrrr-K10) cosine of the angle of joint 5 from its reference direction
+        c_5_t = sin(q_5)
+        # (rrrrrr-K11) sine of the angle of joint 5 from its reference direction
+        s_5 = cos(q_5)
+        # (rrrrrr-V2) from joint 4 to the connection point, along the links
+        r_4_t = c_5_t*rrrrrr_platform_joint_offset_x
+        r_4_z = rrrrrr_joint5_offset_x + rrrrrr_platform_joint_offset_x*s_5
+        # (rrrrrr-K8) cosine of the angle of joint 4 from its reference direction
+        c_4_t = sin(q_4)
+        # (rrrrrr-K9) sine of the angle of joint 4 from its reference direction
+        s_4 = cos(q_4)
+        # (rrrrrr-V2) from joint 4 to the connection point, along the links
+        r_4_t_2 = r_4_t*s_4
+        r_4_t_3 = c_4_t*r_4_t
+        # (rrrrrr-V3) from joint 3 to the connection point, along the links
+        r_3_x = r_4_z + rrrrrr_joint4_offset_x
+        # (rrrrrr-K6) cosine of the angle of joint 3 from its reference direction
+        c_3 = cos(q_3)
+        # (rrrrrr-K7) sine of the angle of joint 3 from its reference direction
+        s_3 = sin(q_3)
+        # (rrrrrr-V3) from joint 3 to the connection point, along the links
+        r_3_r0_y = c_3*r_4_t_2 + r_3_x*s_3
+        # (rrrrrr-V4) from joint 2 to the connection point, along the links
+        r_2_x = rrrrrr_joint3_offset_x + c_3*r_3_x - r_4_t_2*s_3
+        # (rrrrrr-K4) cosine of the angle of joint 2 from its reference direction
+        c_2_t = sin(q_2)
+        # (rrrrrr-K5) sine of the angle of joint 2 from its reference direction
+        s_2 = cos(q_2)
+        # (rrrrrr-V4) from joint 2 to the connection point, along the links
+        r_2_r0_x = -c_2_t*r_2_x - r_3_r0_y*s_2
+        # (rrrrrr-V5) from joint 1 to the connection point, along the links
+        r_1_z = rrrrrr_joint2_offset_x + r_2_x*s_2 - c_2_t*r_3_r0_y
+        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
+        e_1_r2_x = c_3*s_2 - c_2_t*s_3
+        e_1_r2_y = -c_2_t*c_3 - s_2*s_3
+        v_1_t = c_4_t*e_1_r2_y
+        v_1_t_2 = e_1_r2_y*s_4
+        e_1_r6_x = c_5_t*v_1_t_2 + e_1_r2_x*s_5
+        e_1_r6_y = s_5*v_1_t_2 - c_5_t*e_1_r2_x
+        # (rrrrrr-V5) from joint 1 to the connection point, along the links
+        r_1_r1_x = r_1_z*s_2 - c_2_t*r_2_r0_x
+        r_1_r1_y = -c_2_t*r_1_z - r_2_r0_x*s_2
+        r_1_r2_x = c_3*r_1_r1_x + r_1_r1_y*s_3
+        r_1_r2_y = c_3*r_1_r1_y - r_1_r1_x*s_3
+        r_1_t = r_4_t_3*s_4
+        r_1_r4_x = r_1_t - c_4_t*r_1_r2_y
+        r_1_t_2 = c_4_t*r_4_t_3
+        r_1_r4_y = -r_1_t_2 - r_1_r2_y*s_4
+        r_1_r6_x = r_1_r2_x*s_5 - c_5_t*r_1_r4_y
+        r_1_r6_y = -c_5_t*r_1_r2_x - r_1_r4_y*s_5
+        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
+        v_1_x = e_1_r6_y*r_1_r4_x + r_1_r6_y*v_1_t
+        v_1_y = -e_1_r6_x*r_1_r4_x - r_1_r6_x*v_1_t
+        v_1_z = e_1_r6_x*r_1_r6_y - e_1_r6_y*r_1_r6_x
+        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
+        v_2_t = c_4_t*c_5_t
+        v_2_t_2 = c_4_t*s_5
+        # (rrrrrr-V4) from joint 2 to the connection point, along the links
+        r_2_r0_x_2 = c_3*r_2_x + r_3_r0_y*s_3
+        r_2_r0_y = c_3*r_3_r0_y - r_2_x*s_3
+        r_2_r2_x = r_1_t - c_4_t*r_2_r0_y
+        r_2_r2_y = -r_1_t_2 - r_2_r0_y*s_4
+        r_2_r4_x = r_2_r0_x_2*s_5 - c_5_t*r_2_r2_y
+        r_2_r4_y = -c_5_t*r_2_r0_x_2 - r_2_r2_y*s_5
+        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
+        v_2_x = r_2_r2_x*v_2_t_2 - r_2_r4_y*s_4
+        v_2_y = r_2_r4_x*s_4 - r_2_r2_x*v_2_t
+        v_2_z = r_2_r4_y*v_2_t - r_2_r4_x*v_2_t_2
+        # (rrrrrr-V3) from joint 3 to the connection point, along the links
+        r_3_r1_x = r_1_t - c_4_t*r_4_t_2
+        r_3_r1_y = -r_1_t_2 - r_4_t_2*s_4
+        r_3_r3_x = r_3_x*s_5 - c_5_t*r_3_r1_y
+        r_3_r3_y = -c_5_t*r_3_x - r_3_r1_y*s_5
+        # (rrrrrr-V8) velocity of the connection point per rate of joint 3
+        v_3_x = r_3_r1_x*v_2_t_2 - r_3_r3_y*s_4
+        v_3_y = r_3_r3_x*s_4 - r_3_r1_x*v_2_t
+        v_3_z = r_3_r3_y*v_2_t - r_3_r3_x*v_2_t_2
+        # (rrrrrr-V9) velocity of the connection point per rate of joint 4
+        v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
+        # (rrrrrr-V13) force part of reciprocal wrench 1
+        w_1_t = c_4_t*s_3
+        w_1_t_2 = c_3*c_4_t
+        axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_2 - c_2_t*w_1_t
+        axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_2 + s_2*w_1_t
+        # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
+        c_1_t = sin(q_1)
+        # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
+        s_1 = cos(q_1)
+        # (rrrrrr-V13) force part of reciprocal wrench 1
+        axis_z_rrrrrr_axes5_r7_x = -axis_z_rrrrrr_axes5_r5_x*s_1 - c_1_t*s_4
+        axis_z_rrrrrr_axes5_r7_y = s_1*s_4 - axis_z_rrrrrr_axes5_r5_x*c_1_t
+        axis_z_rrrrrr_axes5_in_base_x = (
+        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx +
+            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy +
+            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
+        )
+        axis_z_rrrrrr_axes5_in_base_y = (
+        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx +
+            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy +
+            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
+        )
+        axis_z_rrrrrr_axes5_in_base_z = (
+        axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx +
+            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy +
+            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
+        )
+        w_1_t_3 = s_4*s_5
+        axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_3
+        axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_3 - c_5_t*s_3
+        axis_y_rrrrrr_axes5_r5_x = -axis_y_rrrrrr_axes5_r4_x*c_2_t - axis_y_rrrrrr_axes5_r4_y*s_2
+        axis_y_rrrrrr_axes5_r5_y = axis_y_rrrrrr_axes5_r4_x*s_2 - axis_y_rrrrrr_axes5_r4_y*c_2_t
+        axis_y_rrrrrr_axes5_r7_x = -axis_y_rrrrrr_axes5_r5_x*s_1 - c_1_t*v_2_t_2
+        axis_y_rrrrrr_axes5_r7_y = s_1*v_2_t_2 - axis_y_rrrrrr_axes5_r5_x*c_1_t
+        axis_y_rrrrrr_axes5_in_base_x = (
+        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx +
+            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy +
+            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
+        )
+        axis_y_rrrrrr_axes5_in_base_y = (
+        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx +
+            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy +
+            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
+        )
+        axis_y_rrrrrr_axes5_in_base_z = (
+        axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx +
+            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy +
+            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
+        )
+        axis_x_rrrrrr_axes5_x = (
+        axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_z -
+            axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_y
+        )
+        axis_x_rrrrrr_axes5_y = (
+        axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_x -
+            axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_z
+        )
+        axis_x_rrrrrr_axes5_z = (
+        axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_y -
+            axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_x
+        )
+        # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
+        end_p1_r0_x = (
+        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xy +
+            R_yx*rrrrrr_base_frame_yy + R_zx*rrrrrr_base_frame_zy) +
+            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xy +
+            R_yy*rrrrrr_base_frame_yy + R_zy*rrrrrr_base_frame_zy) +
+            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xy +
+            R_yz*rrrrrr_base_frame_yy + R_zz*rrrrrr_base_frame_zy)
+        )
+        end_p1_r0_y = (
+        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xz +
+            R_yx*rrrrrr_base_frame_yz + R_zx*rrrrrr_base_frame_zz) +
+            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xz +
+            R_yy*rrrrrr_base_frame_yz + R_zy*rrrrrr_base_frame_zz) +
+            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xz +
+            R_yz*rrrrrr_base_frame_yz + R_zz*rrrrrr_base_frame_zz)
+        )
+        end_p1_r0_z = (
+        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xx +
+            R_yx*rrrrrr_base_frame_yx + R_zx*rrrrrr_base_frame_zx) +
+            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xx +
+            R_yy*rrrrrr_base_frame_yx + R_zy*rrrrrr_base_frame_zx) +
+            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xx +
+            R_yz*rrrrrr_base_frame_yx + R_zz*rrrrrr_base_frame_zx)
+        )
+        end_p1_r1_x = end_p1_r0_y*s_1 - c_1_t*end_p1_r0_x
+        end_p1_r1_y = -c_1_t*end_p1_r0_y - end_p1_r0_x*s_1
+        end_p1_r3_x = end_p1_r0_z*s_2 - c_2_t*end_p1_r1_y
+        end_p1_r3_y = -c_2_t*end_p1_r0_z - end_p1_r1_y*s_2
+        end_p1_r4_x = c_3*end_p1_r3_x + end_p1_r3_y*s_3
+        end_p1_r4_y = c_3*end_p1_r3_y - end_p1_r3_x*s_3
+        end_p1_r6_x = end_p1_r1_x*s_4 - c_4_t*end_p1_r4_y
+        end_p1_r6_y = -c_4_t*end_p1_r1_x - end_p1_r4_y*s_4
+        end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
+        end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
+        # (rrrrrr-V13) force part of reciprocal wrench 1
+        w_1_t_4 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
+        w_1_t_5 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
+        w_1_t_6 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
+        w_1_t_7 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
+        w_1_t_8 = size*w_1_t_4
+        w_1_t_9 = size*w_1_t_6
+        w_1_t_10 = size*w_1_t_5
+        w_1_t_11 = size*w_1_t_7
+        w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
+        w_1_t_13 = c_5_t*end_p1_r6_x*size
+        w_1_t_14 = end_p1_r8_y*size
+        w_1_t_15 = sqrt(size_t + w_1_t_14*w_1_t_14)
+        inv_w_1_t_69 = 1.0/w_1_t_15
+        w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
+        w_1_t_17 = inv_w_1_t_69*w_1_t_14
+        w_1_t_18 = w_1_t_13*w_1_t_17
+        w_1_t_19 = w_1_t_16*w_1_t_18
+        w_1_t_20 = w_1_t_13 - w_1_t_17*w_1_t_18
+        w_1_t_21 = v_1_y*w_1_t_16 - w_1_t_17*w_1_t_9
+        w_1_t_22 = v_1_y - w_1_t_16*w_1_t_21
+        w_1_t_23 = w_1_t_9 + w_1_t_17*w_1_t_21
+        w_1_t_24 = w_1_t_11*w_1_t_17
+        w_1_t_25 = v_2_y*w_1_t_16 - w_1_t_24
+        w_1_t_26 = v_2_y - w_1_t_16*w_1_t_25
+        w_1_t_27 = w_1_t_11 + w_1_t_17*w_1_t_25
+        w_1_t_28 = w_1_t_24 - v_3_y*w_1_t_16
+        w_1_t_29 = v_3_y + w_1_t_16*w_1_t_28
+        w_1_t_30 = w_1_t_11 - w_1_t_17*w_1_t_28
+        w_1_t_31 = sqrt(v_4_z*v_4_z + w_1_t_12*w_1_t_12 + w_1_t_19*w_1_t_19 + w_1_t_20*w_1_t_20)
+        inv_w_1_t_101 = 1.0/w_1_t_31
+        w_1_t_32 = inv_w_1_t_101*w_1_t_19
+        w_1_t_33 = inv_w_1_t_101*v_4_z
+        w_1_t_34 = inv_w_1_t_101*w_1_t_12
+        w_1_t_35 = inv_w_1_t_101*w_1_t_20
+        w_1_t_36 = w_1_t_22*w_1_t_32 + w_1_t_23*w_1_t_35 + w_1_t_34*w_1_t_8 - v_1_z*w_1_t_33
+        w_1_t_37 = w_1_t_32*w_1_t_36 - w_1_t_22
+        w_1_t_38 = v_1_z + w_1_t_33*w_1_t_36
+        w_1_t_39 = w_1_t_34*w_1_t_36 - w_1_t_8
+        w_1_t_40 = w_1_t_35*w_1_t_36 - w_1_t_23
+        w_1_t_41 = w_1_t_10*w_1_t_34
+        w_1_t_42 = w_1_t_41 + w_1_t_26*w_1_t_32 + w_1_t_27*w_1_t_35 - v_2_z*w_1_t_33
+        w_1_t_43 = w_1_t_32*w_1_t_42 - w_1_t_26
+        w_1_t_44 = v_2_z + w_1_t_33*w_1_t_42
+        w_1_t_45 = w_1_t_34*w_1_t_42 - w_1_t_10
+        w_1_t_46 = w_1_t_35*w_1_t_42 - w_1_t_27
+        w_1_t_47 = w_1_t_41 + w_1_t_29*w_1_t_32 + w_1_t_30*w_1_t_35 - v_3_z*w_1_t_33
+        w_1_t_48 = w_1_t_32*w_1_t_47 - w_1_t_29
+        w_1_t_49 = v_3_z + w_1_t_33*w_1_t_47
+        w_1_t_50 = w_1_t_34*w_1_t_47 - w_1_t_10
+        w_1_t_51 = w_1_t_35*w_1_t_47 - w_1_t_30
+        w_1_t_52 = (
+        sqrt(v_1_x*v_1_x + w_1_t_37*w_1_t_37 + w_1_t_38*w_1_t_38 + w_1_t_39*w_1_t_39 +
+            w_1_t_40*w_1_t_40)
+        )
+        inv_w_1_t_150 = 1.0/w_1_t_52
+        w_1_t_53 = inv_w_1_t_150*v_1_x
+        w_1_t_54 = inv_w_1_t_150*w_1_t_37
+        w_1_t_55 = inv_w_1_t_150*w_1_t_38
+        w_1_t_56 = inv_w_1_t_150*w_1_t_39
+        w_1_t_57 = inv_w_1_t_150*w_1_t_40
+        w_1_t_58 = (
+        v_2_x*w_1_t_53 + w_1_t_43*w_1_t_54 + w_1_t_44*w_1_t_55 + w_1_t_45*w_1_t_56 +
+            w_1_t_46*w_1_t_57
+        )
+        w_1_t_59 = v_2_x - w_1_t_53*w_1_t_58
+        w_1_t_60 = w_1_t_43 - w_1_t_54*w_1_t_58
+        w_1_t_61 = w_1_t_44 - w_1_t_55*w_1_t_58
+        w_1_t_62 = w_1_t_45 - w_1_t_56*w_1_t_58
+        w_1_t_63 = w_1_t_46 - w_1_t_57*w_1_t_58
+        w_1_t_64 = (
+        v_3_x*w_1_t_53 + w_1_t_48*w_1_t_54 + w_1_t_49*w_1_t_55 + w_1_t_50*w_1_t_56 +
+            w_1_t_51*w_1_t_57
+        )
+        w_1_t_65 = v_3_x - w_1_t_53*w_1_t_64
+        w_1_t_66 = w_1_t_48 - w_1_t_54*w_1_t_64
+        w_1_t_67 = w_1_t_49 - w_1_t_55*w_1_t_64
+        w_1_t_68 = w_1_t_50 - w_1_t_56*w_1_t_64
+        w_1_t_69 = w_1_t_51 - w_1_t_57*w_1_t_64
+        w_1_t_70 = (
+        sqrt(w_1_t_59*w_1_t_59 + w_1_t_60*w_1_t_60 + w_1_t_61*w_1_t_61 + w_1_t_62*w_1_t_62 +
+            w_1_t_63*w_1_t_63)
+        )
+        inv_w_1_t_194 = 1.0/w_1_t_70
+        w_1_t_71 = inv_w_1_t_194*w_1_t_59
+        w_1_t_72 = inv_w_1_t_194*w_1_t_60
+        w_1_t_73 = inv_w_1_t_194*w_1_t_61
+        w_1_t_74 = inv_w_1_t_194*w_1_t_62
+        w_1_t_75 = inv_w_1_t_194*w_1_t_63
+        w_1_t_76 = (
+        w_1_t_65*w_1_t_71 + w_1_t_66*w_1_t_72 + w_1_t_67*w_1_t_73 + w_1_t_68*w_1_t_74 +
+            w_1_t_69*w_1_t_75
+        )
+        w_1_t_77 = w_1_t_65 - w_1_t_71*w_1_t_76
+        w_1_t_78 = w_1_t_66 - w_1_t_72*w_1_t_76
+        w_1_t_79 = w_1_t_67 - w_1_t_73*w_1_t_76
+        w_1_t_80 = w_1_t_68 - w_1_t_74*w_1_t_76
+        w_1_t_81 = w_1_t_69 - w_1_t_75*w_1_t_76
+        w_1_t_82 = (
+        sqrt(w_1_t_77*w_1_t_77 + w_1_t_78*w_1_t_78 + w_1_t_79*w_1_t_79 + w_1_t_80*w_1_t_80 +
+            w_1_t_81*w_1_t_81)
+        )
+        inv_w_1_t_222 = 1.0/w_1_t_82
+        # (rrrrrr-V16) force part of reciprocal wrench 2
+        w_2_t = inv_w_1_t_194*inv_w_1_t_222*w_1_t_76
+        w_2_t_2 = inv_w_1_t_194*w_1_t_71 - inv_w_1_t_222*w_1_t_77*w_2_t
+        w_2_t_3 = inv_w_1_t_194*w_1_t_72 - inv_w_1_t_222*w_1_t_78*w_2_t
+        w_2_t_4 = inv_w_1_t_222*w_1_t_79*w_2_t - inv_w_1_t_194*w_1_t_73
+        w_2_t_5 = size*(inv_w_1_t_194*w_1_t_74 - inv_w_1_t_222*w_1_t_80*w_2_t)
+        w_2_t_6 = size*(inv_w_1_t_194*w_1_t_75 - inv_w_1_t_222*w_1_t_81*w_2_t)
+        # (M2) coupling block of M
+        q_in_base_x = (
+        R_xx*rrrrrr_platform_point_x + R_xy*rrrrrr_platform_point_y + R_xz*rrrrrr_platform_point_z
+        )
+        q_in_base_y = (
+        R_yx*rrrrrr_platform_point_x + R_yy*rrrrrr_platform_point_y + R_yz*rrrrrr_platform_point_z
+        )
+        q_in_base_z = (
+        R_zx*rrrrrr_platform_point_x + R_zy*rrrrrr_platform_point_y + R_zz*rrrrrr_platform_point_z
+        )
+        # (rrrrrr-V16) force part of reciprocal wrench 2
+        w_2_in_base_x = (
+        axis_x_rrrrrr_axes5_x*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_x*w_2_t_3 -
+            axis_z_rrrrrr_axes5_in_base_x*w_2_t_4
+        )
+        w_2_in_base_y = (
+        axis_x_rrrrrr_axes5_y*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_y*w_2_t_3 -
+            axis_z_rrrrrr_axes5_in_base_y*w_2_t_4
+        )
+        w_2_in_base_z = (
+        axis_x_rrrrrr_axes5_z*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_z*w_2_t_3 -
+            axis_z_rrrrrr_axes5_in_base_z*w_2_t_4
+        )
+        # (rrrrrr-V29) moment part of reciprocal wrench 2
+        o_2_x = (
+        w_2_t_5*(axis_y_rrrrrr_axes5_in_base_x*end_p1_r8_x - axis_x_rrrrrr_axes5_x*end_p1_r8_y) +
+            w_2_t_6*(axis_z_rrrrrr_axes5_in_base_x*end_p1_r8_y -
+            axis_y_rrrrrr_axes5_in_base_x*end_p1_r6_x)
+        )
+        o_2_y = (
+        w_2_t_5*(axis_y_rrrrrr_axes5_in_base_y*end_p1_r8_x - axis_x_rrrrrr_axes5_y*end_p1_r8_y) +
+            w_2_t_6*(axis_z_rrrrrr_axes5_in_base_y*end_p1_r8_y -
+            axis_y_rrrrrr_axes5_in_base_y*end_p1_r6_x)
+        )
+        o_2_z = (
+        w_2_t_5*(axis_y_rrrrrr_axes5_in_base_z*end_p1_r8_x - axis_x_rrrrrr_axes5_z*end_p1_r8_y) +
+            w_2_t_6*(axis_z_rrrrrr_axes5_in_base_z*end_p1_r8_y -
+            axis_y_rrrrrr_axes5_in_base_z*end_p1_r6_x)
+        )
+        # (M8) moment of the column's unit force about the platform origin
+        H_a_2_x = o_2_x + q_in_base_y*w_2_in_base_z - q_in_base_z*w_2_in_base_y
+        H_a_2_y = o_2_y + q_in_base_z*w_2_in_base_x - q_in_base_x*w_2_in_base_z
+        H_a_2_z = o_2_z + q_in_base_x*w_2_in_base_y - q_in_base_y*w_2_in_base_x
+        # (C2) rms distance of the platform points from their centroid
+        spread_t_2 = b_c_x - rrrrrr_platform_point_x
+        spread_t_3 = b_c_y - rrrrrr_platform_point_y
+        spread_t_4 = b_c_z - rrrrrr_platform_point_z
+        spread_t_5 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3 + spread_t_4*spread_t_4
+        # (rrrrrr-V13) force part of reciprocal wrench 1
+        pivot_size = abs(w_1_t_15)
+        pivot_size_2 = abs(w_1_t_31)
+        pivot_size_3 = abs(w_1_t_52)
+        pivot_size_4 = abs(w_1_t_70)
+        pivot_size_5 = abs(w_1_t_82)
+        least_pivots = (
+        least(least(least(least(inv_size*pivot_size, inv_size*pivot_size_2),
+            inv_size*pivot_size_3), inv_size*pivot_size_4), inv_size*pivot_size_5)
+        )
+        clear = (
+        clear & m.every((abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE * size)
+            & (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
+            (abs(w_1_t_82) > _TOLERANCE * size))
+        )
+        sums = m.added(sums, leg, (
+        spread_t_5,
+        ))
+        out_H[[0, 1, 2, 3, 4, 5][leg]] = w_2_in_base_x
+        out_H[[6, 7, 8, 9, 10, 11][leg]] = w_2_in_base_y
+        out_H[[12, 13, 14, 15, 16, 17][leg]] = w_2_in_base_z
+        out_H[[18, 19, 20, 21, 22, 23][leg]] = H_a_2_x
+        out_H[[24, 25, 26, 27, 28, 29][leg]] = H_a_2_y
+        out_H[[30, 31, 32, 33, 34, 35][leg]] = H_a_2_z
+        out_pivots[[0, 1, 2, 3, 4, 5][leg]] = least_pivots
+    total_rrrrrr, = sums
     # (C2) rms distance of the platform points from their centroid
     spread = spread_t*sqrt(total_rrrrrr)
-    ok = True
-    return (ok, (spread,),)
+    out_lengths[0] = spread
+    return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
 
 
 # closure_rrrrrr: 1110 mul, 672 add, 0 div, 0 sqrt, 60 trig
-def _closure_rrrrrr_before(c, X, q, f):
+def _run_closure_rrrrrr(m, X, q):
+    sin = m.sin
+    cos = m.cos
+    shared, legs = m.constants("closure_rrrrrr")
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -8697,6 +9507,11 @@ def _closure_rrrrrr_before(c, X, q, f):
     X_4 = X[4]
     X_5 = X[5]
     X_6 = X[6]
+    q_1 = q[1]
+    q_2 = q[2]
+    q_3 = q[3]
+    q_4 = q[4]
+    q_5 = q[5]
     # X: named entries
     t_x = X_0
     t_y = X_1
@@ -8724,1249 +9539,782 @@ def _closure_rrrrrr_before(c, X, q, f):
     R_zx = quaternion_xz - quaternion_wy
     R_zy = quaternion_wx + quaternion_yz
     R_zz = 1.0 - quaternion_xx - quaternion_yy
-    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    return (ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz,), (),)
-
-
-def _closure_rrrrrr_rrrrrr(c, k, x, s, f):
-    sin = f.sin
-    cos = f.cos
-    (
-    rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
-        rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx, rrrrrr_base_frame_zy,
-        rrrrrr_base_frame_zz, rrrrrr_base_point_x, rrrrrr_base_point_y, rrrrrr_base_point_z,
-        rrrrrr_joint2_offset_x, rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x,
-        rrrrrr_joint5_offset_x, rrrrrr_platform_joint_axis_platform_x,
-        rrrrrr_platform_joint_axis_platform_y, rrrrrr_platform_joint_axis_platform_z,
-        rrrrrr_platform_joint_offset_x, rrrrrr_platform_point_x, rrrrrr_platform_point_y,
-        rrrrrr_platform_point_z,
-    ) = k
-    q_1, q_2, q_3, q_4, q_5 = x
-    t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
-    # (rrrrrr-K10) cosine of the angle of joint 5 from its reference direction
-    c_5_t = sin(q_5)
-    # (rrrrrr-K11) sine of the angle of joint 5 from its reference direction
-    s_5 = cos(q_5)
-    # (rrrrrr-V2) from joint 4 to the connection point, along the links
-    r_4_t = c_5_t*rrrrrr_platform_joint_offset_x
-    r_4_z = rrrrrr_joint5_offset_x + rrrrrr_platform_joint_offset_x*s_5
-    # (rrrrrr-K8) cosine of the angle of joint 4 from its reference direction
-    c_4_t = sin(q_4)
-    # (rrrrrr-K9) sine of the angle of joint 4 from its reference direction
-    s_4 = cos(q_4)
-    # (rrrrrr-V2) from joint 4 to the connection point, along the links
-    r_4_t_2 = r_4_t*s_4
-    r_4_t_3 = c_4_t*r_4_t
-    # (rrrrrr-V3) from joint 3 to the connection point, along the links
-    r_3_x = r_4_z + rrrrrr_joint4_offset_x
-    # (rrrrrr-K6) cosine of the angle of joint 3 from its reference direction
-    c_3 = cos(q_3)
-    # (rrrrrr-K7) sine of the angle of joint 3 from its reference direction
-    s_3 = sin(q_3)
-    # (rrrrrr-V3) from joint 3 to the connection point, along the links
-    r_3_r0_y = c_3*r_4_t_2 + r_3_x*s_3
-    # (rrrrrr-V4) from joint 2 to the connection point, along the links
-    r_2_x = rrrrrr_joint3_offset_x + c_3*r_3_x - r_4_t_2*s_3
-    # (rrrrrr-K4) cosine of the angle of joint 2 from its reference direction
-    c_2_t = sin(q_2)
-    # (rrrrrr-K5) sine of the angle of joint 2 from its reference direction
-    s_2 = cos(q_2)
-    # (rrrrrr-V4) from joint 2 to the connection point, along the links
-    r_2_r0_x = -c_2_t*r_2_x - r_3_r0_y*s_2
-    # (rrrrrr-V5) from joint 1 to the connection point, along the links
-    r_1_z = rrrrrr_joint2_offset_x + r_2_x*s_2 - c_2_t*r_3_r0_y
-    # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-    e_1_r2_x = c_3*s_2 - c_2_t*s_3
-    e_1_r2_y = -c_2_t*c_3 - s_2*s_3
-    v_1_t = c_4_t*e_1_r2_y
-    v_1_t_2 = e_1_r2_y*s_4
-    e_1_r6_x = c_5_t*v_1_t_2 + e_1_r2_x*s_5
-    e_1_r6_y = s_5*v_1_t_2 - c_5_t*e_1_r2_x
-    # (rrrrrr-V5) from joint 1 to the connection point, along the links
-    r_1_r1_x = r_1_z*s_2 - c_2_t*r_2_r0_x
-    r_1_r1_y = -c_2_t*r_1_z - r_2_r0_x*s_2
-    r_1_r2_x = c_3*r_1_r1_x + r_1_r1_y*s_3
-    r_1_r2_y = c_3*r_1_r1_y - r_1_r1_x*s_3
-    r_1_t = r_4_t_3*s_4
-    r_1_r4_x = r_1_t - c_4_t*r_1_r2_y
-    r_1_t_2 = c_4_t*r_4_t_3
-    r_1_r4_y = -r_1_t_2 - r_1_r2_y*s_4
-    r_1_r6_x = r_1_r2_x*s_5 - c_5_t*r_1_r4_y
-    r_1_r6_y = -c_5_t*r_1_r2_x - r_1_r4_y*s_5
-    # (rrrrrr-V6) velocity of the connection point per rate of joint 1
-    v_1_x = e_1_r6_y*r_1_r4_x + r_1_r6_y*v_1_t
-    v_1_y = -e_1_r6_x*r_1_r4_x - r_1_r6_x*v_1_t
-    v_1_z = e_1_r6_x*r_1_r6_y - e_1_r6_y*r_1_r6_x
-    # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-    v_2_t = c_4_t*c_5_t
-    v_2_t_2 = c_4_t*s_5
-    # (rrrrrr-V4) from joint 2 to the connection point, along the links
-    r_2_r0_x_2 = c_3*r_2_x + r_3_r0_y*s_3
-    r_2_r0_y = c_3*r_3_r0_y - r_2_x*s_3
-    r_2_r2_x = r_1_t - c_4_t*r_2_r0_y
-    r_2_r2_y = -r_1_t_2 - r_2_r0_y*s_4
-    r_2_r4_x = r_2_r0_x_2*s_5 - c_5_t*r_2_r2_y
-    r_2_r4_y = -c_5_t*r_2_r0_x_2 - r_2_r2_y*s_5
-    # (rrrrrr-V7) velocity of the connection point per rate of joint 2
-    v_2_x = r_2_r2_x*v_2_t_2 - r_2_r4_y*s_4
-    v_2_y = r_2_r4_x*s_4 - r_2_r2_x*v_2_t
-    v_2_z = r_2_r4_y*v_2_t - r_2_r4_x*v_2_t_2
-    # (rrrrrr-V3) from joint 3 to the connection point, along the links
-    r_3_r1_x = r_1_t - c_4_t*r_4_t_2
-    r_3_r1_y = -r_1_t_2 - r_4_t_2*s_4
-    r_3_r3_x = r_3_x*s_5 - c_5_t*r_3_r1_y
-    r_3_r3_y = -c_5_t*r_3_x - r_3_r1_y*s_5
-    # (rrrrrr-V8) velocity of the connection point per rate of joint 3
-    v_3_x = r_3_r1_x*v_2_t_2 - r_3_r3_y*s_4
-    v_3_y = r_3_r3_x*s_4 - r_3_r1_x*v_2_t
-    v_3_z = r_3_r3_y*v_2_t - r_3_r3_x*v_2_t_2
-    # (rrrrrr-V9) velocity of the connection point per rate of joint 4
-    v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
-    # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
-    c_1_t = sin(q_1)
-    # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
-    s_1 = cos(q_1)
-    # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
-    end_p1_r0_x = (
-    rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xy + R_yx*rrrrrr_base_frame_yy +
-        R_zx*rrrrrr_base_frame_zy) +
-        rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xy +
-        R_yy*rrrrrr_base_frame_yy + R_zy*rrrrrr_base_frame_zy) +
-        rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xy +
-        R_yz*rrrrrr_base_frame_yy + R_zz*rrrrrr_base_frame_zy)
-    )
-    end_p1_r0_y = (
-    rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xz + R_yx*rrrrrr_base_frame_yz +
-        R_zx*rrrrrr_base_frame_zz) +
-        rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xz +
-        R_yy*rrrrrr_base_frame_yz + R_zy*rrrrrr_base_frame_zz) +
-        rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xz +
-        R_yz*rrrrrr_base_frame_yz + R_zz*rrrrrr_base_frame_zz)
-    )
-    end_p1_r0_z = (
-    rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xx + R_yx*rrrrrr_base_frame_yx +
-        R_zx*rrrrrr_base_frame_zx) +
-        rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xx +
-        R_yy*rrrrrr_base_frame_yx + R_zy*rrrrrr_base_frame_zx) +
-        rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xx +
-        R_yz*rrrrrr_base_frame_yx + R_zz*rrrrrr_base_frame_zx)
-    )
-    end_p1_r1_x = end_p1_r0_y*s_1 - c_1_t*end_p1_r0_x
-    end_p1_r1_y = -c_1_t*end_p1_r0_y - end_p1_r0_x*s_1
-    end_p1_r3_x = end_p1_r0_z*s_2 - c_2_t*end_p1_r1_y
-    end_p1_r3_y = -c_2_t*end_p1_r0_z - end_p1_r1_y*s_2
-    end_p1_r4_x = c_3*end_p1_r3_x + end_p1_r3_y*s_3
-    end_p1_r4_y = c_3*end_p1_r3_y - end_p1_r3_x*s_3
-    end_p1_r6_x = end_p1_r1_x*s_4 - c_4_t*end_p1_r4_y
-    end_p1_r6_y = -c_4_t*end_p1_r1_x - end_p1_r4_y*s_4
-    end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
-    end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
-    w_1_t_2 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
-    # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
-    n_m1_r0_y = -c_5_t*end_p1_r8_x - end_p1_r8_y*s_5
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_3 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
-    w_1_t_4 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
-    # (rrrrrr-V12) direction 2 of the moment that the platform joint transmits
-    n_m2_t = c_5_t*end_p1_r6_x
-    # (rrrrrr-K1) from the base point to the connection point
-    S_x = (
-    t_x + R_xx*rrrrrr_platform_point_x + R_xy*rrrrrr_platform_point_y +
-        R_xz*rrrrrr_platform_point_z - rrrrrr_base_point_x
-    )
-    S_y = (
-    t_y + R_yx*rrrrrr_platform_point_x + R_yy*rrrrrr_platform_point_y +
-        R_yz*rrrrrr_platform_point_z - rrrrrr_base_point_y
-    )
-    S_z = (
-    t_z + R_zx*rrrrrr_platform_point_x + R_zy*rrrrrr_platform_point_y +
-        R_zz*rrrrrr_platform_point_z - rrrrrr_base_point_z
-    )
-    S_r0_x = S_x*rrrrrr_base_frame_xy + S_y*rrrrrr_base_frame_yy + S_z*rrrrrr_base_frame_zy
-    S_r0_y = S_x*rrrrrr_base_frame_xz + S_y*rrrrrr_base_frame_yz + S_z*rrrrrr_base_frame_zz
-    S_r0_z = S_x*rrrrrr_base_frame_xx + S_y*rrrrrr_base_frame_yx + S_z*rrrrrr_base_frame_zx
-    S_r1_x = S_r0_y*s_1 - S_r0_x*c_1_t
-    S_r1_y = -S_r0_x*s_1 - S_r0_y*c_1_t
-    S_r3_x = S_r0_z*s_2 - S_r1_y*c_2_t
-    S_r3_y = -S_r0_z*c_2_t - S_r1_y*s_2
-    S_r4_x = S_r3_x*c_3 + S_r3_y*s_3
-    S_r4_y = S_r3_y*c_3 - S_r3_x*s_3
-    S_r6_y = -S_r1_x*c_4_t - S_r4_y*s_4
-    # (rrrrrr-N141) from the connection point as the links reach it to the platform's
-    gap_x = S_r4_x*s_5 - r_1_r6_x - S_r6_y*c_5_t
-    gap_y = -r_1_r6_y - S_r4_x*c_5_t - S_r6_y*s_5
-    gap_z = S_r1_x*s_4 - r_1_r4_x - S_r4_y*c_4_t
     ok = True
-    return (
-    ok, (), (gap_x, gap_y, gap_z, v_1_x, v_1_y, v_1_z, v_2_x, v_2_y, v_2_z, v_3_x, v_3_y, v_3_z,
-        v_4_z, rrrrrr_platform_joint_offset_x, -end_p1_r6_x, -w_1_t, -w_1_t_2, -w_1_t_2,
-        n_m1_r0_y, -end_p1_r8_x, -w_1_t_3, -w_1_t_4, -w_1_t_4, n_m2_t, end_p1_r8_y,),
-    )
+    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    out_gap_rrrrrr = m.zeros(30)
+    out_jacobian_rrrrrr = m.zeros(150)
+    for leg, k in legs[0]:
+        (
+        rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
+            rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx,
+            rrrrrr_base_frame_zy, rrrrrr_base_frame_zz, rrrrrr_base_point_x, rrrrrr_base_point_y,
+            rrrrrr_base_point_z, rrrrrr_joint2_offset_x, rrrrrr_joint3_offset_x,
+            rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x, rrrrrr_platform_joint_axis_platform_x,
+            rrrrrr_platform_joint_axis_platform_y, rrrrrr_platform_joint_axis_platform_z,
+            rrrrrr_platform_joint_offset_x, rrrrrr_platform_point_x, rrrrrr_platform_point_y,
+            rrrrrr_platform_point_z,
+        ) = k
+        q_1 = q[[0, 5, 10, 15, 20, 25][leg]]
+        q_2 = q[[1, 6, 11, 16, 21, 26][leg]]
+        q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
+        q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
+        q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
+        # (rrrrrr-K10) cosine of the angle of joint 5 from its reference direction
+        c_5_t = sin(q_5)
+        # (rrrrrr-K11) sine of the angle of joint 5 from its reference direction
+        s_5 = cos(q_5)
+        # (rrrrrr-V2) from joint 4 to the connection point, along the links
+        r_4_t = c_5_t*rrrrrr_platform_joint_offset_x
+        r_4_z = rrrrrr_joint5_offset_x + rrrrrr_platform_joint_offset_x*s_5
+        # (rrrrrr-K8) cosine of the angle of joint 4 from its reference direction
+        c_4_t = sin(q_4)
+        # (rrrrrr-K9) sine of the angle of joint 4 from its reference direction
+        s_4 = cos(q_4)
+        # (rrrrrr-V2) from joint 4 to the connection point, along the links
+        r_4_t_2 = r_4_t*s_4
+        r_4_t_3 = c_4_t*r_4_t
+        # (rrrrrr-V3) from joint 3 to the connection point, along the links
+        r_3_x = r_4_z + rrrrrr_joint4_offset_x
+        # (rrrrrr-K6) cosine of the angle of joint 3 from its reference direction
+        c_3 = cos(q_3)
+        # (rrrrrr-K7) sine of the angle of joint 3 from its reference direction
+        s_3 = sin(q_3)
+        # (rrrrrr-V3) from joint 3 to the connection point, along the links
+        r_3_r0_y = c_3*r_4_t_2 + r_3_x*s_3
+        # (rrrrrr-V4) from joint 2 to the connection point, along the links
+        r_2_x = rrrrrr_joint3_offset_x + c_3*r_3_x - r_4_t_2*s_3
+        # (rrrrrr-K4) cosine of the angle of joint 2 from its reference direction
+        c_2_t = sin(q_2)
+        # (rrrrrr-K5) sine of the angle of joint 2 from its reference direction
+        s_2 = cos(q_2)
+        # (rrrrrr-V4) from joint 2 to the connection point, along the links
+        r_2_r0_x = -c_2_t*r_2_x - r_3_r0_y*s_2
+        # (rrrrrr-V5) from joint 1 to the connection point, along the links
+        r_1_z = rrrrrr_joint2_offset_x + r_2_x*s_2 - c_2_t*r_3_r0_y
+        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
+        e_1_r2_x = c_3*s_2 - c_2_t*s_3
+        e_1_r2_y = -c_2_t*c_3 - s_2*s_3
+        v_1_t = c_4_t*e_1_r2_y
+        v_1_t_2 = e_1_r2_y*s_4
+        e_1_r6_x = c_5_t*v_1_t_2 + e_1_r2_x*s_5
+        e_1_r6_y = s_5*v_1_t_2 - c_5_t*e_1_r2_x
+        # (rrrrrr-V5) from joint 1 to the connection point, along the links
+        r_1_r1_x = r_1_z*s_2 - c_2_t*r_2_r0_x
+        r_1_r1_y = -c_2_t*r_1_z - r_2_r0_x*s_2
+        r_1_r2_x = c_3*r_1_r1_x + r_1_r1_y*s_3
+        r_1_r2_y = c_3*r_1_r1_y - r_1_r1_x*s_3
+        r_1_t = r_4_t_3*s_4
+        r_1_r4_x = r_1_t - c_4_t*r_1_r2_y
+        r_1_t_2 = c_4_t*r_4_t_3
+        r_1_r4_y = -r_1_t_2 - r_1_r2_y*s_4
+        r_1_r6_x = r_1_r2_x*s_5 - c_5_t*r_1_r4_y
+        r_1_r6_y = -c_5_t*r_1_r2_x - r_1_r4_y*s_5
+        # (rrrrrr-V6) velocity of the connection point per rate of joint 1
+        v_1_x = e_1_r6_y*r_1_r4_x + r_1_r6_y*v_1_t
+        v_1_y = -e_1_r6_x*r_1_r4_x - r_1_r6_x*v_1_t
+        v_1_z = e_1_r6_x*r_1_r6_y - e_1_r6_y*r_1_r6_x
+        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
+        v_2_t = c_4_t*c_5_t
+        v_2_t_2 = c_4_t*s_5
+        # (rrrrrr-V4) from joint 2 to the connection point, along the links
+        r_2_r0_x_2 = c_3*r_2_x + r_3_r0_y*s_3
+        r_2_r0_y = c_3*r_3_r0_y - r_2_x*s_3
+        r_2_r2_x = r_1_t - c_4_t*r_2_r0_y
+        r_2_r2_y = -r_1_t_2 - r_2_r0_y*s_4
+        r_2_r4_x = r_2_r0_x_2*s_5 - c_5_t*r_2_r2_y
+        r_2_r4_y = -c_5_t*r_2_r0_x_2 - r_2_r2_y*s_5
+        # (rrrrrr-V7) velocity of the connection point per rate of joint 2
+        v_2_x = r_2_r2_x*v_2_t_2 - r_2_r4_y*s_4
+        v_2_y = r_2_r4_x*s_4 - r_2_r2_x*v_2_t
+        v_2_z = r_2_r4_y*v_2_t - r_2_r4_x*v_2_t_2
+        # (rrrrrr-V3) from joint 3 to the connection point, along the links
+        r_3_r1_x = r_1_t - c_4_t*r_4_t_2
+        r_3_r1_y = -r_1_t_2 - r_4_t_2*s_4
+        r_3_r3_x = r_3_x*s_5 - c_5_t*r_3_r1_y
+        r_3_r3_y = -c_5_t*r_3_x - r_3_r1_y*s_5
+        # (rrrrrr-V8) velocity of the connection point per rate of joint 3
+        v_3_x = r_3_r1_x*v_2_t_2 - r_3_r3_y*s_4
+        v_3_y = r_3_r3_x*s_4 - r_3_r1_x*v_2_t
+        v_3_z = r_3_r3_y*v_2_t - r_3_r3_x*v_2_t_2
+        # (rrrrrr-V9) velocity of the connection point per rate of joint 4
+        v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
+        # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
+        c_1_t = sin(q_1)
+        # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
+        s_1 = cos(q_1)
+        # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
+        end_p1_r0_x = (
+        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xy +
+            R_yx*rrrrrr_base_frame_yy + R_zx*rrrrrr_base_frame_zy) +
+            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xy +
+            R_yy*rrrrrr_base_frame_yy + R_zy*rrrrrr_base_frame_zy) +
+            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xy +
+            R_yz*rrrrrr_base_frame_yy + R_zz*rrrrrr_base_frame_zy)
+        )
+        end_p1_r0_y = (
+        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xz +
+            R_yx*rrrrrr_base_frame_yz + R_zx*rrrrrr_base_frame_zz) +
+            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xz +
+            R_yy*rrrrrr_base_frame_yz + R_zy*rrrrrr_base_frame_zz) +
+            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xz +
+            R_yz*rrrrrr_base_frame_yz + R_zz*rrrrrr_base_frame_zz)
+        )
+        end_p1_r0_z = (
+        rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xx +
+            R_yx*rrrrrr_base_frame_yx + R_zx*rrrrrr_base_frame_zx) +
+            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xx +
+            R_yy*rrrrrr_base_frame_yx + R_zy*rrrrrr_base_frame_zx) +
+            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xx +
+            R_yz*rrrrrr_base_frame_yx + R_zz*rrrrrr_base_frame_zx)
+        )
+        end_p1_r1_x = end_p1_r0_y*s_1 - c_1_t*end_p1_r0_x
+        end_p1_r1_y = -c_1_t*end_p1_r0_y - end_p1_r0_x*s_1
+        end_p1_r3_x = end_p1_r0_z*s_2 - c_2_t*end_p1_r1_y
+        end_p1_r3_y = -c_2_t*end_p1_r0_z - end_p1_r1_y*s_2
+        end_p1_r4_x = c_3*end_p1_r3_x + end_p1_r3_y*s_3
+        end_p1_r4_y = c_3*end_p1_r3_y - end_p1_r3_x*s_3
+        end_p1_r6_x = end_p1_r1_x*s_4 - c_4_t*end_p1_r4_y
+        end_p1_r6_y = -c_4_t*end_p1_r1_x - end_p1_r4_y*s_4
+        end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
+        end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
+        # (rrrrrr-V13) force part of reciprocal wrench 1
+        w_1_t = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
+        w_1_t_2 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
+        # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
+        n_m1_r0_y = -c_5_t*end_p1_r8_x - end_p1_r8_y*s_5
+        # (rrrrrr-V13) force part of reciprocal wrench 1
+        w_1_t_3 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
+        w_1_t_4 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
+        # (rrrrrr-V12) direction 2 of the moment that the platform joint transmits
+        n_m2_t = c_5_t*end_p1_r6_x
+        # (rrrrrr-K1) from the base point to the connection point
+        S_x = (
+        t_x + R_xx*rrrrrr_platform_point_x + R_xy*rrrrrr_platform_point_y +
+            R_xz*rrrrrr_platform_point_z - rrrrrr_base_point_x
+        )
+        S_y = (
+        t_y + R_yx*rrrrrr_platform_point_x + R_yy*rrrrrr_platform_point_y +
+            R_yz*rrrrrr_platform_point_z - rrrrrr_base_point_y
+        )
+        S_z = (
+        t_z + R_zx*rrrrrr_platform_point_x + R_zy*rrrrrr_platform_point_y +
+            R_zz*rrrrrr_platform_point_z - rrrrrr_base_point_z
+        )
+        S_r0_x = S_x*rrrrrr_base_frame_xy + S_y*rrrrrr_base_frame_yy + S_z*rrrrrr_base_frame_zy
+        S_r0_y = S_x*rrrrrr_base_frame_xz + S_y*rrrrrr_base_frame_yz + S_z*rrrrrr_base_frame_zz
+        S_r0_z = S_x*rrrrrr_base_frame_xx + S_y*rrrrrr_base_frame_yx + S_z*rrrrrr_base_frame_zx
+        S_r1_x = S_r0_y*s_1 - S_r0_x*c_1_t
+        S_r1_y = -S_r0_x*s_1 - S_r0_y*c_1_t
+        S_r3_x = S_r0_z*s_2 - S_r1_y*c_2_t
+        S_r3_y = -S_r0_z*c_2_t - S_r1_y*s_2
+        S_r4_x = S_r3_x*c_3 + S_r3_y*s_3
+        S_r4_y = S_r3_y*c_3 - S_r3_x*s_3
+        S_r6_y = -S_r1_x*c_4_t - S_r4_y*s_4
+        # (rrrrrr-N141) from the connection point as the links reach it to the platform's
+        gap_x = S_r4_x*s_5 - r_1_r6_x - S_r6_y*c_5_t
+        gap_y = -r_1_r6_y - S_r4_x*c_5_t - S_r6_y*s_5
+        gap_z = S_r1_x*s_4 - r_1_r4_x - S_r4_y*c_4_t
+        out_gap_rrrrrr[[0, 5, 10, 15, 20, 25][leg]] = gap_x
+        out_gap_rrrrrr[[1, 6, 11, 16, 21, 26][leg]] = gap_y
+        out_gap_rrrrrr[[2, 7, 12, 17, 22, 27][leg]] = gap_z
+        out_jacobian_rrrrrr[[0, 25, 50, 75, 100, 125][leg]] = v_1_x
+        out_jacobian_rrrrrr[[5, 30, 55, 80, 105, 130][leg]] = v_1_y
+        out_jacobian_rrrrrr[[10, 35, 60, 85, 110, 135][leg]] = v_1_z
+        out_jacobian_rrrrrr[[1, 26, 51, 76, 101, 126][leg]] = v_2_x
+        out_jacobian_rrrrrr[[6, 31, 56, 81, 106, 131][leg]] = v_2_y
+        out_jacobian_rrrrrr[[11, 36, 61, 86, 111, 136][leg]] = v_2_z
+        out_jacobian_rrrrrr[[2, 27, 52, 77, 102, 127][leg]] = v_3_x
+        out_jacobian_rrrrrr[[7, 32, 57, 82, 107, 132][leg]] = v_3_y
+        out_jacobian_rrrrrr[[12, 37, 62, 87, 112, 137][leg]] = v_3_z
+        out_jacobian_rrrrrr[[13, 38, 63, 88, 113, 138][leg]] = v_4_z
+        out_jacobian_rrrrrr[[9, 34, 59, 84, 109, 134][leg]] = rrrrrr_platform_joint_offset_x
+        out_gap_rrrrrr[[3, 8, 13, 18, 23, 28][leg]] = -end_p1_r6_x
+        out_jacobian_rrrrrr[[15, 40, 65, 90, 115, 140][leg]] = -w_1_t
+        out_jacobian_rrrrrr[[16, 41, 66, 91, 116, 141][leg]] = -w_1_t_2
+        out_jacobian_rrrrrr[[17, 42, 67, 92, 117, 142][leg]] = -w_1_t_2
+        out_jacobian_rrrrrr[[18, 43, 68, 93, 118, 143][leg]] = n_m1_r0_y
+        out_gap_rrrrrr[[4, 9, 14, 19, 24, 29][leg]] = -end_p1_r8_x
+        out_jacobian_rrrrrr[[20, 45, 70, 95, 120, 145][leg]] = -w_1_t_3
+        out_jacobian_rrrrrr[[21, 46, 71, 96, 121, 146][leg]] = -w_1_t_4
+        out_jacobian_rrrrrr[[22, 47, 72, 97, 122, 147][leg]] = -w_1_t_4
+        out_jacobian_rrrrrr[[23, 48, 73, 98, 123, 148][leg]] = n_m2_t
+        out_jacobian_rrrrrr[[24, 49, 74, 99, 124, 149][leg]] = end_p1_r8_y
+    return ok, (out_gap_rrrrrr, out_jacobian_rrrrrr,)
 
 
-_DYNAMICS = _Plan(
-    inputs=('X', 'V', 'q'),
-arrays=(('M', (6, 6)), ('Z', (6,)), ('H', (6, 6))),
-    before=_Part(
-        _dynamics_before,
-('J_star_t_22', 'J_star_t_24', 'J_star_xx', 'J_star_xy', 'J_star_xz', 'J_star_yy', 'J_star_yz',
-        'J_star_zz', 'Z_p_t', 'Z_p_t_2', 'Z_p_t_3', 'gravity_x', 'gravity_y', 'gravity_z',
-        'h_star_x', 'h_star_y', 'h_star_z'),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _dynamics_rrrrrr,
-            "rrrrrr",
-(),
-('J_1_xx', 'J_2_xx', 'J_2_xy', 'J_2_xz', 'J_2_yy', 'J_2_yz', 'J_2_zz', 'J_3_xx', 'J_3_xy',
-            'J_3_xz', 'J_3_yy', 'J_3_yz', 'J_3_zz', 'J_4_xx', 'J_4_xy', 'J_4_xz', 'J_4_yy',
-            'J_4_yz', 'J_5_xx', 'J_5_xy', 'J_5_xz', 'J_5_yy', 'J_5_yz', 'J_5_zz', 'Jc_2_t',
-            'Jc_3_t_2', 'Jc_3_t_3', 'Jc_4_xx', 'Sigma_2_xx', 'Sigma_2_yy', 'Sigma_2_zz',
-            'Sigma_3_xx', 'Sigma_3_yy', 'Sigma_3_zz', 'Sigma_4_xx', 'Sigma_4_yy', 'Sigma_4_zz',
-            'Sigma_5_xx', 'Sigma_5_yy', 'Sigma_5_zz', 'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_1_y',
-            'h_1_z', 'h_2_x', 'h_2_y', 'h_2_z', 'h_3_x', 'h_3_y', 'h_3_z', 'h_4_x', 'h_4_y',
-            'h_4_z', 'h_5_x', 'h_5_y', 'h_5_z', 'hc_3_x', 'rrrrrr_base_frame_xx',
-            'rrrrrr_base_frame_xy', 'rrrrrr_base_frame_xz', 'rrrrrr_base_frame_yx',
-            'rrrrrr_base_frame_yy', 'rrrrrr_base_frame_yz', 'rrrrrr_base_frame_zx',
-            'rrrrrr_base_frame_zy', 'rrrrrr_base_frame_zz', 'rrrrrr_joint2_offset_x',
-            'rrrrrr_joint3_offset_x', 'rrrrrr_joint4_offset_x', 'rrrrrr_joint5_offset_x',
-            'rrrrrr_link3_mass', 'rrrrrr_link4_mass', 'rrrrrr_platform_joint_axis_platform_x',
-            'rrrrrr_platform_joint_axis_platform_y', 'rrrrrr_platform_joint_axis_platform_z',
-            'rrrrrr_platform_joint_offset_x', 'rrrrrr_platform_point_x',
-            'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z', 'size', 'size_t'),
-(('q', (0, 5, 10, 15, 20, 25)), ('q', (1, 6, 11, 16, 21, 26)), ('q', (2, 7, 12, 17, 22, 27)),
-            ('q', (3, 8, 13, 18, 23, 28)), ('q', (4, 9, 14, 19, 24, 29))),
-(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14),
-            27,
-            (
-(2, (0, 1, 2, 3, 4, 5)),
-(2, (6, 7, 8, 9, 10, 11)),
-(2, (12, 13, 14, 15, 16, 17)),
-(2, (18, 19, 20, 21, 22, 23)),
-(2, (24, 25, 26, 27, 28, 29)),
-(2, (30, 31, 32, 33, 34, 35)),
-            ),
-        ),
-    ),
-    after=_Part(
-        _dynamics_after,
-('m_star',),
-(15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29),
-        (
-(0, 0), (0, 1), (0, 6), (0, 2), (0, 12), (0, 7), (0, 8), (0, 13), (0, 14), (0, 3), (0, 18), (0,
-            4), (0, 24), (0, 5), (0, 30), (0, 9), (0, 19), (0, 10), (0, 25), (0, 11), (0, 31), (0,
-            15), (0, 20), (0, 16), (0, 26), (0, 17), (0, 32), (0, 21), (0, 22), (0, 27), (0, 23),
-            (0, 33), (0, 28), (0, 29), (0, 34), (0, 35), (1, 0), (1, 1), (1, 2), (1, 3), (1, 4),
-            (1, 5),
-        ),
-    ),
+_GIVEN = ()  # positions in q and X of the extra coordinates
+_CLOSURES = (  # function, its inputs, shapes of its arrays; in q the joints of each leg, and those that turn;
+    # rows of the Jacobian whose determinant tells the branch, and its signs
+    (_run_closure_rrrrrr, ('X', 'q'), ((6, 5), (6, 25)), np.array([[0, 1, 2, 3, 4], [5, 6, 7, 8, 9], [10, 11, 12, 13, 14], [15, 16, 17, 18, 19], [20, 21, 22, 23, 24], [25, 26, 27, 28, 29]]), [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29], [0, 1, 2, 3, 4], _BRANCHES["sigma_closure"]),
 )
-_M = _Plan(
-    inputs=('X', 'q'),
-arrays=(('M', (6, 6)),),
-    before=_Part(
-        _M_before,
-('J_star_t_22', 'J_star_t_24', 'J_star_xx', 'J_star_xy', 'J_star_xz', 'J_star_yz', 'h_star_x',
-        'h_star_y', 'h_star_z'),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _M_rrrrrr,
-            "rrrrrr",
-(),
-('J_1_xx', 'J_2_xx', 'J_2_xy', 'J_2_xz', 'J_2_yy', 'J_2_yz', 'J_2_zz', 'J_3_xx', 'J_3_xy',
-            'J_3_xz', 'J_3_yy', 'J_3_yz', 'J_3_zz', 'J_4_xx', 'J_4_xy', 'J_4_xz', 'J_4_yy',
-            'J_4_yz', 'J_5_xx', 'J_5_xy', 'J_5_xz', 'J_5_yy', 'J_5_yz', 'J_5_zz', 'Jc_2_t',
-            'Jc_3_t_2', 'Jc_3_t_3', 'Jc_4_xx', 'h_3_y', 'h_3_z', 'h_4_y', 'h_4_z', 'h_5_x',
-            'h_5_y', 'h_5_z', 'hc_3_x', 'rrrrrr_base_frame_xx', 'rrrrrr_base_frame_xy',
-            'rrrrrr_base_frame_xz', 'rrrrrr_base_frame_yx', 'rrrrrr_base_frame_yy',
-            'rrrrrr_base_frame_yz', 'rrrrrr_base_frame_zx', 'rrrrrr_base_frame_zy',
-            'rrrrrr_base_frame_zz', 'rrrrrr_joint2_offset_x', 'rrrrrr_joint3_offset_x',
-            'rrrrrr_joint4_offset_x', 'rrrrrr_joint5_offset_x',
-            'rrrrrr_platform_joint_axis_platform_x', 'rrrrrr_platform_joint_axis_platform_y',
-            'rrrrrr_platform_joint_axis_platform_z', 'rrrrrr_platform_joint_offset_x',
-            'rrrrrr_platform_point_x', 'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z',
-            'size', 'size_t'),
-(('q', (0, 5, 10, 15, 20, 25)), ('q', (1, 6, 11, 16, 21, 26)), ('q', (2, 7, 12, 17, 22, 27)),
-            ('q', (3, 8, 13, 18, 23, 28)), ('q', (4, 9, 14, 19, 24, 29))),
-(0, 1, 2, 3, 4, 5, 6, 7, 8),
-            21,
-            (
-            ),
-        ),
-    ),
-    after=_Part(
-        _M_after,
-('m_star',),
-(9, 10, 11, 12, 13, 14, 15, 16, 17),
-        (
-(0, 0), (0, 1), (0, 6), (0, 2), (0, 12), (0, 7), (0, 8), (0, 13), (0, 14), (0, 3), (0, 18), (0,
-            4), (0, 24), (0, 5), (0, 30), (0, 9), (0, 19), (0, 10), (0, 25), (0, 11), (0, 31), (0,
-            15), (0, 20), (0, 16), (0, 26), (0, 17), (0, 32), (0, 21), (0, 22), (0, 27), (0, 23),
-            (0, 33), (0, 28), (0, 29), (0, 34), (0, 35),
-        ),
-    ),
-)
-_Z = _Plan(
-    inputs=('X', 'V', 'q'),
-arrays=(('Z', (6,)),),
-    before=_Part(
-        _Z_before,
-('J_star_xx', 'J_star_xy', 'J_star_xz', 'J_star_yy', 'J_star_yz', 'J_star_zz', 'Z_p_t', 'Z_p_t_2',
-        'Z_p_t_3', 'gravity_x', 'gravity_y', 'gravity_z', 'h_star_x', 'h_star_y', 'h_star_z'),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _Z_rrrrrr,
-            "rrrrrr",
-(),
-('J_1_xx', 'J_2_xy', 'J_2_xz', 'J_2_yz', 'J_3_xy', 'J_3_xz', 'J_3_yz', 'J_4_xy', 'J_4_xz',
-            'J_4_yz', 'J_5_xy', 'J_5_xz', 'J_5_yz', 'Sigma_2_xx', 'Sigma_2_yy', 'Sigma_2_zz',
-            'Sigma_3_xx', 'Sigma_3_yy', 'Sigma_3_zz', 'Sigma_4_xx', 'Sigma_4_yy', 'Sigma_4_zz',
-            'Sigma_5_xx', 'Sigma_5_yy', 'Sigma_5_zz', 'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_1_y',
-            'h_1_z', 'h_2_x', 'h_2_y', 'h_2_z', 'h_3_x', 'h_3_y', 'h_3_z', 'h_4_x', 'h_4_y',
-            'h_4_z', 'h_5_x', 'h_5_y', 'h_5_z', 'rrrrrr_base_frame_xx', 'rrrrrr_base_frame_xy',
-            'rrrrrr_base_frame_xz', 'rrrrrr_base_frame_yx', 'rrrrrr_base_frame_yy',
-            'rrrrrr_base_frame_yz', 'rrrrrr_base_frame_zx', 'rrrrrr_base_frame_zy',
-            'rrrrrr_base_frame_zz', 'rrrrrr_joint2_offset_x', 'rrrrrr_joint3_offset_x',
-            'rrrrrr_joint4_offset_x', 'rrrrrr_joint5_offset_x', 'rrrrrr_link3_mass',
-            'rrrrrr_link4_mass', 'rrrrrr_platform_joint_axis_platform_x',
-            'rrrrrr_platform_joint_axis_platform_y', 'rrrrrr_platform_joint_axis_platform_z',
-            'rrrrrr_platform_joint_offset_x', 'rrrrrr_platform_point_x',
-            'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z', 'size', 'size_t'),
-(('q', (0, 5, 10, 15, 20, 25)), ('q', (1, 6, 11, 16, 21, 26)), ('q', (2, 7, 12, 17, 22, 27)),
-            ('q', (3, 8, 13, 18, 23, 28)), ('q', (4, 9, 14, 19, 24, 29))),
-(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14),
-            6,
-            (
-            ),
-        ),
-    ),
-    after=_Part(
-        _Z_after,
-(),
-(15, 16, 17, 18, 19, 20),
-        (
-(0, 0), (0, 1), (0, 2), (0, 3), (0, 4), (0, 5),
-        ),
-    ),
-)
-_H = _Plan(
-    inputs=('X', 'q'),
-arrays=(('H', (6, 6)),),
-    before=_Part(
-        _H_before,
-(),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _H_rrrrrr,
-            "rrrrrr",
-(),
-('rrrrrr_base_frame_xx', 'rrrrrr_base_frame_xy', 'rrrrrr_base_frame_xz', 'rrrrrr_base_frame_yx',
-            'rrrrrr_base_frame_yy', 'rrrrrr_base_frame_yz', 'rrrrrr_base_frame_zx',
-            'rrrrrr_base_frame_zy', 'rrrrrr_base_frame_zz', 'rrrrrr_joint2_offset_x',
-            'rrrrrr_joint3_offset_x', 'rrrrrr_joint4_offset_x', 'rrrrrr_joint5_offset_x',
-            'rrrrrr_platform_joint_axis_platform_x', 'rrrrrr_platform_joint_axis_platform_y',
-            'rrrrrr_platform_joint_axis_platform_z', 'rrrrrr_platform_joint_offset_x',
-            'rrrrrr_platform_point_x', 'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z',
-            'size', 'size_t'),
-(('q', (0, 5, 10, 15, 20, 25)), ('q', (1, 6, 11, 16, 21, 26)), ('q', (2, 7, 12, 17, 22, 27)),
-            ('q', (3, 8, 13, 18, 23, 28)), ('q', (4, 9, 14, 19, 24, 29))),
-(0, 1, 2, 3, 4, 5, 6, 7, 8),
-            0,
-            (
-(0, (0, 1, 2, 3, 4, 5)),
-(0, (6, 7, 8, 9, 10, 11)),
-(0, (12, 13, 14, 15, 16, 17)),
-(0, (18, 19, 20, 21, 22, 23)),
-(0, (24, 25, 26, 27, 28, 29)),
-(0, (30, 31, 32, 33, 34, 35)),
-            ),
-        ),
-    ),
-)
-_REQUIRED = _Plan(
-    inputs=('X', 'V', 'A', 'q'),
-arrays=(('required', (6,)), ('H', (6, 6))),
-    before=_Part(
-        _required_before,
-('J_star_xx', 'J_star_xy', 'J_star_xz', 'J_star_yy', 'J_star_yz', 'J_star_zz', 'gravity_x',
-        'gravity_y', 'gravity_z', 'h_star_x', 'h_star_y', 'h_star_z', 'm_star'),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _required_rrrrrr,
-            "rrrrrr",
-('gravity_x', 'gravity_y', 'gravity_z'),
-('J_1_xx', 'J_2_xy', 'J_2_xz', 'J_2_yz', 'J_3_xy', 'J_3_xz', 'J_3_yz', 'J_4_xy', 'J_4_xz',
-            'J_4_yz', 'J_5_xy', 'J_5_xz', 'J_5_yz', 'Sigma_2_xx', 'Sigma_2_yy', 'Sigma_2_zz',
-            'Sigma_3_xx', 'Sigma_3_yy', 'Sigma_3_zz', 'Sigma_4_xx', 'Sigma_4_yy', 'Sigma_4_zz',
-            'Sigma_5_xx', 'Sigma_5_yy', 'Sigma_5_zz', 'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_1_y',
-            'h_1_z', 'h_2_x', 'h_2_y', 'h_2_z', 'h_3_x', 'h_3_y', 'h_3_z', 'h_4_x', 'h_4_y',
-            'h_4_z', 'h_5_x', 'h_5_y', 'h_5_z', 'rrrrrr_base_frame_xx', 'rrrrrr_base_frame_xy',
-            'rrrrrr_base_frame_xz', 'rrrrrr_base_frame_yx', 'rrrrrr_base_frame_yy',
-            'rrrrrr_base_frame_yz', 'rrrrrr_base_frame_zx', 'rrrrrr_base_frame_zy',
-            'rrrrrr_base_frame_zz', 'rrrrrr_joint2_offset_x', 'rrrrrr_joint3_offset_x',
-            'rrrrrr_joint4_offset_x', 'rrrrrr_joint5_offset_x', 'rrrrrr_link3_mass',
-            'rrrrrr_link4_mass', 'rrrrrr_platform_joint_axis_platform_x',
-            'rrrrrr_platform_joint_axis_platform_y', 'rrrrrr_platform_joint_axis_platform_z',
-            'rrrrrr_platform_joint_offset_x', 'rrrrrr_platform_point_x',
-            'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z', 'size', 'size_t'),
-(('q', (0, 5, 10, 15, 20, 25)), ('q', (1, 6, 11, 16, 21, 26)), ('q', (2, 7, 12, 17, 22, 27)),
-            ('q', (3, 8, 13, 18, 23, 28)), ('q', (4, 9, 14, 19, 24, 29))),
-(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20),
-            6,
-            (
-(1, (0, 1, 2, 3, 4, 5)),
-(1, (6, 7, 8, 9, 10, 11)),
-(1, (12, 13, 14, 15, 16, 17)),
-(1, (18, 19, 20, 21, 22, 23)),
-(1, (24, 25, 26, 27, 28, 29)),
-(1, (30, 31, 32, 33, 34, 35)),
-            ),
-        ),
-    ),
-    after=_Part(
-        _required_after,
-(),
-(21, 22, 23, 24, 25, 26),
-        (
-(0, 0), (0, 1), (0, 2), (0, 3), (0, 4), (0, 5),
-        ),
-    ),
-)
-_INVERSE_KINEMATICS = _Plan(
-    inputs=('q',),
-arrays=(('q', (30,)),),
-    before=_Part(
-        _inverse_kinematics_before,
-(),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _inverse_kinematics_rrrrrr,
-            "rrrrrr",
-(),
-(),
-(('q', (0, 5, 10, 15, 20, 25)), ('q', (1, 6, 11, 16, 21, 26)), ('q', (2, 7, 12, 17, 22, 27)),
-            ('q', (3, 8, 13, 18, 23, 28)), ('q', (4, 9, 14, 19, 24, 29))),
-(),
-            0,
-            (
-(0, (0, 5, 10, 15, 20, 25)),
-(0, (1, 6, 11, 16, 21, 26)),
-(0, (2, 7, 12, 17, 22, 27)),
-(0, (3, 8, 13, 18, 23, 28)),
-(0, (4, 9, 14, 19, 24, 29)),
-            ),
-        ),
-    ),
-)
-_JOINT_RATES = _Plan(
-    inputs=('X', 'V', 'q'),
-arrays=(('qd', (30,)),),
-    before=_Part(
-        _joint_rates_before,
-(),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _joint_rates_rrrrrr,
-            "rrrrrr",
-(),
-('rrrrrr_base_frame_xx', 'rrrrrr_base_frame_xy', 'rrrrrr_base_frame_xz', 'rrrrrr_base_frame_yx',
-            'rrrrrr_base_frame_yy', 'rrrrrr_base_frame_yz', 'rrrrrr_base_frame_zx',
-            'rrrrrr_base_frame_zy', 'rrrrrr_base_frame_zz', 'rrrrrr_joint2_offset_x',
-            'rrrrrr_joint3_offset_x', 'rrrrrr_joint4_offset_x', 'rrrrrr_joint5_offset_x',
-            'rrrrrr_platform_joint_axis_platform_x', 'rrrrrr_platform_joint_axis_platform_y',
-            'rrrrrr_platform_joint_axis_platform_z', 'rrrrrr_platform_joint_offset_x',
-            'rrrrrr_platform_point_x', 'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z',
-            'size', 'size_t'),
-(('q', (0, 5, 10, 15, 20, 25)), ('q', (1, 6, 11, 16, 21, 26)), ('q', (2, 7, 12, 17, 22, 27)),
-            ('q', (3, 8, 13, 18, 23, 28)), ('q', (4, 9, 14, 19, 24, 29))),
-(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14),
-            0,
-            (
-(0, (0, 5, 10, 15, 20, 25)),
-(0, (1, 6, 11, 16, 21, 26)),
-(0, (2, 7, 12, 17, 22, 27)),
-(0, (3, 8, 13, 18, 23, 28)),
-(0, (4, 9, 14, 19, 24, 29)),
-            ),
-        ),
-    ),
-)
-_JOINT_ACCELERATIONS = _Plan(
-    inputs=('X', 'V', 'A', 'q'),
-arrays=(('qdd', (30,)),),
-    before=_Part(
-        _joint_accelerations_before,
-(),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _joint_accelerations_rrrrrr,
-            "rrrrrr",
-(),
-('rrrrrr_base_frame_xx', 'rrrrrr_base_frame_xy', 'rrrrrr_base_frame_xz', 'rrrrrr_base_frame_yx',
-            'rrrrrr_base_frame_yy', 'rrrrrr_base_frame_yz', 'rrrrrr_base_frame_zx',
-            'rrrrrr_base_frame_zy', 'rrrrrr_base_frame_zz', 'rrrrrr_joint2_offset_x',
-            'rrrrrr_joint3_offset_x', 'rrrrrr_joint4_offset_x', 'rrrrrr_joint5_offset_x',
-            'rrrrrr_platform_joint_axis_platform_x', 'rrrrrr_platform_joint_axis_platform_y',
-            'rrrrrr_platform_joint_axis_platform_z', 'rrrrrr_platform_joint_offset_x',
-            'rrrrrr_platform_point_x', 'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z',
-            'size', 'size_t'),
-(('q', (0, 5, 10, 15, 20, 25)), ('q', (1, 6, 11, 16, 21, 26)), ('q', (2, 7, 12, 17, 22, 27)),
-            ('q', (3, 8, 13, 18, 23, 28)), ('q', (4, 9, 14, 19, 24, 29))),
-(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20),
-            0,
-            (
-(0, (0, 5, 10, 15, 20, 25)),
-(0, (1, 6, 11, 16, 21, 26)),
-(0, (2, 7, 12, 17, 22, 27)),
-(0, (3, 8, 13, 18, 23, 28)),
-(0, (4, 9, 14, 19, 24, 29)),
-            ),
-        ),
-    ),
-)
-_LEGS_FORCE = _Plan(
-    inputs=('X', 'V', 'A', 'q'),
-arrays=(('leg_force', (6, 6)), ('drive', (6, 6))),
-    before=_Part(
-        _legs_before,
-(),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _legs_rrrrrr,
-            "rrrrrr",
-('gravity_x', 'gravity_y', 'gravity_z'),
-('J_1_xx', 'J_2_xy', 'J_2_xz', 'J_2_yz', 'J_3_xy', 'J_3_xz', 'J_3_yz', 'J_4_xy', 'J_4_xz',
-            'J_4_yz', 'J_5_xy', 'J_5_xz', 'J_5_yz', 'Sigma_2_xx', 'Sigma_2_yy', 'Sigma_2_zz',
-            'Sigma_3_xx', 'Sigma_3_yy', 'Sigma_3_zz', 'Sigma_4_xx', 'Sigma_4_yy', 'Sigma_4_zz',
-            'Sigma_5_xx', 'Sigma_5_yy', 'Sigma_5_zz', 'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_1_y',
-            'h_1_z', 'h_2_x', 'h_2_y', 'h_2_z', 'h_3_x', 'h_3_y', 'h_3_z', 'h_4_x', 'h_4_y',
-            'h_4_z', 'h_5_x', 'h_5_y', 'h_5_z', 'rrrrrr_base_frame_xx', 'rrrrrr_base_frame_xy',
-            'rrrrrr_base_frame_xz', 'rrrrrr_base_frame_yx', 'rrrrrr_base_frame_yy',
-            'rrrrrr_base_frame_yz', 'rrrrrr_base_frame_zx', 'rrrrrr_base_frame_zy',
-            'rrrrrr_base_frame_zz', 'rrrrrr_joint2_offset_x', 'rrrrrr_joint3_offset_x',
-            'rrrrrr_joint4_offset_x', 'rrrrrr_joint5_offset_x', 'rrrrrr_link3_mass',
-            'rrrrrr_link4_mass', 'rrrrrr_link5_mass', 'rrrrrr_platform_joint_axis_platform_x',
-            'rrrrrr_platform_joint_axis_platform_y', 'rrrrrr_platform_joint_axis_platform_z',
-            'rrrrrr_platform_joint_offset_x', 'rrrrrr_platform_point_x',
-            'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z', 'size', 'size_t'),
-(('q', (0, 5, 10, 15, 20, 25)), ('q', (1, 6, 11, 16, 21, 26)), ('q', (2, 7, 12, 17, 22, 27)),
-            ('q', (3, 8, 13, 18, 23, 28)), ('q', (4, 9, 14, 19, 24, 29))),
-(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20),
-            0,
-            (
-(0, (0, 6, 12, 18, 24, 30)),
-(0, (1, 7, 13, 19, 25, 31)),
-(0, (2, 8, 14, 20, 26, 32)),
-(0, (3, 9, 15, 21, 27, 33)),
-(0, (4, 10, 16, 22, 28, 34)),
-(0, (5, 11, 17, 23, 29, 35)),
-(1, (0, 6, 12, 18, 24, 30)),
-(1, (1, 7, 13, 19, 25, 31)),
-(1, (2, 8, 14, 20, 26, 32)),
-(1, (3, 9, 15, 21, 27, 33)),
-(1, (4, 10, 16, 22, 28, 34)),
-(1, (5, 11, 17, 23, 29, 35)),
-            ),
-        ),
-    ),
-)
-_POTENTIAL = _Plan(
-    inputs=('X', 'q'),
-arrays=(('potential', (1,)),),
-    before=_Part(
-        _potential_before,
-('gravity_x', 'gravity_y', 'gravity_z', 'h_star_x', 'h_star_y', 'h_star_z', 'm_star'),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _potential_rrrrrr,
-            "rrrrrr",
-(),
-('b_r0_x', 'b_r0_y', 'b_r0_z', 'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_1_x', 'h_1_y', 'h_1_z', 'h_2_x',
-            'h_2_y', 'h_2_z', 'h_3_x', 'h_3_y', 'h_3_z', 'h_4_x', 'h_4_y', 'h_4_z', 'h_5_x',
-            'h_5_y', 'h_5_z', 'rrrrrr_joint2_offset_x', 'rrrrrr_joint3_offset_x',
-            'rrrrrr_joint4_offset_x', 'rrrrrr_link1_mass', 'rrrrrr_link2_mass',
-            'rrrrrr_link3_mass', 'rrrrrr_link4_mass'),
-(('q', (0, 5, 10, 15, 20, 25)), ('q', (1, 6, 11, 16, 21, 26)), ('q', (2, 7, 12, 17, 22, 27)),
-            ('q', (3, 8, 13, 18, 23, 28)), ('q', (4, 9, 14, 19, 24, 29))),
-(),
-            1,
-            (
-            ),
-        ),
-    ),
-    after=_Part(
-        _potential_after,
-(),
-(0,),
-        ((0, 0),),
-    ),
-)
-_CONDITION = _Plan(
-    inputs=('X', 'q'),
-arrays=(('H', (6, 6)), ('lengths', (2,)), ('pivots', (6,)), ('reach', (6,))),
-    before=_Part(
-        _condition_before,
-('legs_size',),
-        None,
-        ((1, 1),),
-    ),
-    legs=(
-        _LegPart(
-            _condition_rrrrrr,
-            "rrrrrr",
-('b_c_x', 'b_c_y', 'b_c_z'),
-('inv_size', 'rrrrrr_base_frame_xx', 'rrrrrr_base_frame_xy', 'rrrrrr_base_frame_xz',
-            'rrrrrr_base_frame_yx', 'rrrrrr_base_frame_yy', 'rrrrrr_base_frame_yz',
-            'rrrrrr_base_frame_zx', 'rrrrrr_base_frame_zy', 'rrrrrr_base_frame_zz',
-            'rrrrrr_joint2_offset_x', 'rrrrrr_joint3_offset_x', 'rrrrrr_joint4_offset_x',
-            'rrrrrr_joint5_offset_x', 'rrrrrr_platform_joint_axis_platform_x',
-            'rrrrrr_platform_joint_axis_platform_y', 'rrrrrr_platform_joint_axis_platform_z',
-            'rrrrrr_platform_joint_offset_x', 'rrrrrr_platform_point_x',
-            'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z', 'size', 'size_t'),
-(('q', (0, 5, 10, 15, 20, 25)), ('q', (1, 6, 11, 16, 21, 26)), ('q', (2, 7, 12, 17, 22, 27)),
-            ('q', (3, 8, 13, 18, 23, 28)), ('q', (4, 9, 14, 19, 24, 29))),
-(0, 1, 2, 3, 4, 5, 6, 7, 8),
-            1,
-            (
-(0, (0, 1, 2, 3, 4, 5)),
-(0, (6, 7, 8, 9, 10, 11)),
-(0, (12, 13, 14, 15, 16, 17)),
-(0, (18, 19, 20, 21, 22, 23)),
-(0, (24, 25, 26, 27, 28, 29)),
-(0, (30, 31, 32, 33, 34, 35)),
-(2, (0, 1, 2, 3, 4, 5)),
-            ),
-        ),
-    ),
-    after=_Part(
-        _condition_after,
-('spread_t',),
-(),
-        ((1, 0),),
-    ),
-)
-_CLOSURE_RRRRRR = _Plan(
-    inputs=('X', 'q'),
-arrays=(('gap_rrrrrr', (6, 5)), ('jacobian_rrrrrr', (6, 25))),
-    before=_Part(
-        _closure_rrrrrr_before,
-(),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _closure_rrrrrr_rrrrrr,
-            "rrrrrr",
-(),
-('rrrrrr_base_frame_xx', 'rrrrrr_base_frame_xy', 'rrrrrr_base_frame_xz', 'rrrrrr_base_frame_yx',
-            'rrrrrr_base_frame_yy', 'rrrrrr_base_frame_yz', 'rrrrrr_base_frame_zx',
-            'rrrrrr_base_frame_zy', 'rrrrrr_base_frame_zz', 'rrrrrr_base_point_x',
-            'rrrrrr_base_point_y', 'rrrrrr_base_point_z', 'rrrrrr_joint2_offset_x',
-            'rrrrrr_joint3_offset_x', 'rrrrrr_joint4_offset_x', 'rrrrrr_joint5_offset_x',
-            'rrrrrr_platform_joint_axis_platform_x', 'rrrrrr_platform_joint_axis_platform_y',
-            'rrrrrr_platform_joint_axis_platform_z', 'rrrrrr_platform_joint_offset_x',
-            'rrrrrr_platform_point_x', 'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z'),
-(('q', (0, 5, 10, 15, 20, 25)), ('q', (1, 6, 11, 16, 21, 26)), ('q', (2, 7, 12, 17, 22, 27)),
-            ('q', (3, 8, 13, 18, 23, 28)), ('q', (4, 9, 14, 19, 24, 29))),
-(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
-            0,
-            (
-(0, (0, 5, 10, 15, 20, 25)),
-(0, (1, 6, 11, 16, 21, 26)),
-(0, (2, 7, 12, 17, 22, 27)),
-(1, (0, 25, 50, 75, 100, 125)),
-(1, (5, 30, 55, 80, 105, 130)),
-(1, (10, 35, 60, 85, 110, 135)),
-(1, (1, 26, 51, 76, 101, 126)),
-(1, (6, 31, 56, 81, 106, 131)),
-(1, (11, 36, 61, 86, 111, 136)),
-(1, (2, 27, 52, 77, 102, 127)),
-(1, (7, 32, 57, 82, 107, 132)),
-(1, (12, 37, 62, 87, 112, 137)),
-(1, (13, 38, 63, 88, 113, 138)),
-(1, (9, 34, 59, 84, 109, 134)),
-(0, (3, 8, 13, 18, 23, 28)),
-(1, (15, 40, 65, 90, 115, 140)),
-(1, (16, 41, 66, 91, 116, 141)),
-(1, (17, 42, 67, 92, 117, 142)),
-(1, (18, 43, 68, 93, 118, 143)),
-(0, (4, 9, 14, 19, 24, 29)),
-(1, (20, 45, 70, 95, 120, 145)),
-(1, (21, 46, 71, 96, 121, 146)),
-(1, (22, 47, 72, 97, 122, 147)),
-(1, (23, 48, 73, 98, 123, 148)),
-(1, (24, 49, 74, 99, 124, 149)),
-            ),
-        ),
-    ),
-)
+_Q = 3  # where a quaternion begins in X
 _DEFAULT = Parameters()
 
 
-_PIVOT = 1.8e-12  # a pivot below this fraction of its row counts as zero (epsilon^(3/4))
-_CLEARLY = 2.0  # rows change places only for a pivot that is larger by this factor
+def _steps_M(m, X, q0):
+    q = _closed(m, X, q0)
+    M_of_M, = m.run(_run_M, ((6, 6),), X, q)
+    return (M_of_M,)
 
 
-def _solve(a, b):
-    """Solve a x = b, a (..., n, n), b (..., n): rows scaled, partial pivoting; NaN if singular."""
-    lead = np.broadcast_shapes(a.shape[:-2], b.shape[:-1])
-    n = a.shape[-1]
-    count = int(np.prod(lead, dtype=int))
-    a = np.broadcast_to(a, (*lead, n, n)).reshape(count, n, n).copy()
-    b = np.broadcast_to(b, (*lead, n)).reshape(count, n).copy()
-    if count <= _FEW:
-        rows = [_solve_one(matrix, right) for matrix, right in zip(a.tolist(), b.tolist())]
-        x = np.array(rows).reshape(count, n)
-    else:
-        with np.errstate(all="ignore"):
-            x = _solve_block(a, b)
-    x[~np.isfinite(x).all(axis=1)] = np.nan
-    return x.reshape(*lead, n)
+def _steps_Z(m, X, V, q0):
+    q = _closed(m, X, q0)
+    Z_of_Z, = m.run(_run_Z, ((6,),), X, V, q)
+    return (Z_of_Z,)
 
 
-def _solve_one(a, b):
-    """The same for one system of nested lists."""
-    n = len(b)
-    failure = [np.nan] * n
-    for i, row in enumerate(a):
-        size = max(map(abs, row), default=0.0)
-        if not 0.0 < size < np.inf:
-            return failure
-        a[i] = [v / size for v in row] + [b[i] / size]
-    for k in range(n):
-        best = max(range(k, n), key=lambda i: abs(a[i][k]))
-        if abs(a[best][k]) > _CLEARLY * abs(a[k][k]):
-            a[k], a[best] = a[best], a[k]
-        if not abs(a[k][k]) > _PIVOT:
-            return failure
-        head = a[k]
-        for i in range(k + 1, n):
-            factor = a[i][k] / head[k]
-            a[i] = [v - factor * h for v, h in zip(a[i], head)]
-    x = [0.0] * n
-    for k in reversed(range(n)):
-        x[k] = (a[k][n] - sum(a[k][j] * x[j] for j in range(k + 1, n))) / a[k][k]
-    return x
+def _steps_H(m, X, q0):
+    q = _closed(m, X, q0)
+    H_of_H, = m.run(_run_H, ((6, 6),), X, q)
+    return (H_of_H,)
 
 
-def _solve_block(a, b):
-    """The same for many systems, (states, n, n) and (states, n)."""
-    states, n = b.shape
-    size = np.max(np.abs(a), axis=2, keepdims=True)
-    good = np.all((size > 0.0) & np.isfinite(size), axis=(1, 2))
-    a = np.concatenate((a, b[:, :, None]), axis=2) / size
-    which = np.arange(states)
-    for k in range(n):
-        column = np.abs(a[:, k:, k])
-        best = np.argmax(column, axis=1)
-        best = k + np.where(column[which, best] > _CLEARLY * column[:, 0], best, 0)
-        a[which, k], a[which, best] = a[which, best], a[which, k].copy()
-        good &= np.abs(a[:, k, k]) > _PIVOT
-        factor = a[:, k + 1 :, k] / a[:, k, k, None]
-        a[:, k + 1 :] -= factor[:, :, None] * a[:, k, None]
-    x = np.zeros((states, n))
-    for k in reversed(range(n)):
-        x[:, k] = (a[:, k, n] - np.sum(a[:, k, k + 1 : n] * x[:, k + 1 :], axis=1)) / a[:, k, k]
-    x[~good] = np.nan
-    return x
+def _steps_inverse_kinematics(m, X, q0):
+    q = _closed(m, X, q0)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((30,),), q)
+    return (q_of_inverse_kinematics,)
 
 
-_CLOSURES = (  # plan, joints of each leg as positions in q, rows and sign of the determinant
-    (_CLOSURE_RRRRRR, np.array([[0, 1, 2, 3, 4], [5, 6, 7, 8, 9], [10, 11, 12, 13, 14], [15, 16, 17, 18, 19], [20, 21, 22, 23, 24], [25, 26, 27, 28, 29]]), [0, 1, 2, 3, 4], _BRANCHES["sigma_closure"]),
-)
-_EXTRA_JOINTS = ()  # positions in q of the extra coordinates
-_TURNS = np.array((True, True, True, True, True, True, True, True, True, True, True, True, True, True, True, True, True, True, True, True, True, True, True, True, True, True, True, True, True, True))
+def _steps_joint_rates(m, X, V, q0):
+    q = _closed(m, X, q0)
+    qd_of_joint_rates, = m.run(_run_joint_rates, ((30,),), X, V, q)
+    return (qd_of_joint_rates,)
 
 
-def _guess(q0):
-    """The first guess (..., NJ) of the displacements, by default those of home."""
-    return HOME_Q if q0 is None else _vector("first guess", "q0", q0, NJ)
+def _steps_joint_accelerations(m, X, V, A, q0):
+    q = _closed(m, X, q0)
+    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ((30,),), X, V, A, q)
+    return (qdd_of_joint_accelerations,)
 
 
-def _closed(X, q0, p):
-    """Displacements q (..., NJ) that close the loops at X, by Newton from q0 (..., NJ).
-
-    NaN where the iteration does not converge in 60 steps of at most 0.5 each, or not on the
-    assembly branch of home.
-    """
-    lead = _lead(X=X, q0=q0)
-    X = np.broadcast_to(X, (*lead, NQ)).reshape(-1, NQ)
-    q = np.broadcast_to(q0, (*lead, NJ)).reshape(-1, NJ).copy()
-    for place, joint in enumerate(_EXTRA_JOINTS):
-        q[:, joint] = X[:, NQ - len(_EXTRA_JOINTS) + place]
-    for plan, joints, rows, signs in _CLOSURES:
-        _close_legs(plan, joints, X, q, p, rows, signs)
-    turned = np.pi - np.remainder(np.pi - q, 2.0 * np.pi)
-    fixed = [j for j in range(NJ) if j in _EXTRA_JOINTS or not _TURNS[j]]
-    turned[:, fixed] = q[:, fixed]
-    return turned.reshape(*lead, NJ)
+def _steps_dynamics(m, X, V, q0):
+    q = _closed(m, X, q0)
+    (
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
+    ) = m.run(_run_dynamics, ((6, 6), (6,), (6, 6)), X, V, q)
+    return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
 
 
-def _close_legs(plan, joints, X, q, p, rows, signs):
-    """Newton's iteration for the legs of a type, all states at once; q is changed.
-
-    What converges off home's branch is NaN: the determinant of the Jacobian's rows, which keeps
-    its sign as long as no leg becomes singular, has not home's sign there.
-    """
-    states, (legs, unknowns) = len(X), joints.shape
-    open_ = np.isfinite(X).all(axis=1) & np.isfinite(q).all(axis=1)
-    q[~open_] = np.nan
-    for _ in range(60):
-        at = np.flatnonzero(open_)
-        if not at.size:
-            return
-        gap, jacobian = _run(plan, p, *({"X": X, "q": q}[k][at] for k in plan.inputs))
-        jacobian = jacobian.reshape(at.size, legs, -1, unknowns)
-        step = _newton_step(jacobian, gap)
-        largest = np.max(np.abs(step), axis=(1, 2))
-        with np.errstate(all="ignore"):
-            step *= np.minimum(1.0, 0.5 / largest)[:, None, None]
-        q[at[:, None, None], joints] += step
-        steady = ~(largest > 1e-11)  # converged, or not a number
-        open_[at[steady]] = False
-        if rows:
-            with np.errstate(all="ignore"):
-                turned = np.linalg.slogdet(jacobian[steady][:, :, rows])[0] * signs
-            q[at[steady][~(turned > 0.0).all(axis=1)]] = np.nan
-    q[open_] = np.nan
+def _steps_inverse_dynamics(m, X, V, A, wrench, weights, q0):
+    q = _closed(m, X, q0)
+    required_of_required, H_of_required = m.run(_run_required, ((6,), (6, 6)), X, V, A, q)
+    extend_1 = wrench
+    subtract_2 = required_of_required - extend_1
+    solve_3 = _solve(H_of_required, subtract_2)
+    return (solve_3,)
 
 
-def _newton_step(jacobian, gap):
-    """Least-squares solution of jacobian step = gap per leg."""
-    if jacobian.shape[-1] == jacobian.shape[-2]:
-        return _solve(jacobian, gap)
-    bad = ~(np.isfinite(jacobian).all(axis=(-1, -2)) & np.isfinite(gap).all(axis=-1))
-    step = np.linalg.pinv(np.where(bad[..., None, None], 0.0, jacobian)) @ gap[..., None]
-    step = np.array(step[..., 0])
-    step[bad] = np.nan
-    return step
+def _steps_forward_dynamics(m, X, V, tau, wrench, q0):
+    q = _closed(m, X, q0)
+    (
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
+    ) = m.run(_run_dynamics, ((6, 6), (6,), (6, 6)), X, V, q)
+    times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
+    extend_2 = wrench
+    add_3 = times_1 + extend_2
+    subtract_4 = add_3 - Z_of_dynamics
+    solve_5 = _solve(M_of_dynamics, subtract_4)
+    return (solve_5,)
+
+
+def _steps_complete_acceleration(m, X, V, A, wrench, q0):
+    same_1 = A
+    return (same_1,)
+
+
+def _steps_leg_reactions(m, X, V, A, wrench, q0):
+    q = _closed(m, X, q0)
+    required_of_required, H_of_required = m.run(_run_required, ((6,), (6, 6)), X, V, A, q)
+    extend_1 = wrench
+    subtract_2 = required_of_required - extend_1
+    solve_3 = _solve(H_of_required, subtract_2)
+    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ((6, 6), (6, 6)), X, V, A, q)
+    add_forces_4 = _with_forces(leg_force_of_legs, solve_3, drive_of_legs, [0, 1, 2, 3, 4, 5])
+    return (add_forces_4,)
+
+
+def _steps_energy(m, X, V, q0):
+    q = _closed(m, X, q0)
+    M_of_M, = m.run(_run_M, ((6, 6),), X, q)
+    potential_of_potential, = m.run(_run_potential, ((1,),), X, q)
+    half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
+    entry_2 = potential_of_potential[0]
+    return (half_form_1, entry_2,)
+
+
+def _steps_null_space(m, X, q0):
+    q = _closed(m, X, q0)
+    H_of_H, = m.run(_run_H, ((6, 6),), X, q)
+    null_basis_1 = _null_basis(H_of_H, 6)
+    return (null_basis_1,)
+
+
+def _steps_condition(m, X, length, q0):
+    q = _closed(m, X, q0)
+    (
+    H_of_condition, lengths_of_condition, pivots_of_condition, reach_of_condition,
+    ) = m.run(_run_condition, ((6, 6), (2,), (6,), (6,)), X, q)
+    choose_length_1 = _chosen_length(lengths_of_condition, length)
+    divide_rows_2 = _rows_divided(H_of_condition, choose_length_1, [3, 4, 5])
+    singular_values_3 = _singular_values(divide_rows_2)
+    return (singular_values_3, pivots_of_condition,)
+
+
+def _steps_mismatch(m, X, q_actuated, q0):
+    q = _closed(m, X, q0)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((30,),), q)
+    take_1 = q_of_inverse_kinematics[[1, 6, 11, 16, 21, 26]]
+    subtract_2 = q_actuated - take_1
+    wrap_turns_3 = _wrapped(subtract_2, [0, 1, 2, 3, 4, 5])
+    return (wrap_turns_3,)
+
+
+def _steps_slope(m, X, q0):
+    q = _closed(m, X, q0)
+    H_of_H, = m.run(_run_H, ((6, 6),), X, q)
+    return (H_of_H,)
+
+
+def _steps_forward_kinematics(m, q_actuated, X0, q0):
+    X_found = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated, q0,), (q0,), True)
+    return (X_found,)
+
+
+def _steps_rotation(m, X):
+    take_1 = X[3:7]
+    rotation_of_quaternion_2 = _rotation_of_quaternion(take_1)
+    return (rotation_of_quaternion_2,)
+
+
+def _steps_pose(m, t, R):
+    quaternion_of_rotation_1 = _quaternion_of_rotation(R)
+    join_2 = np.concatenate((t, quaternion_of_rotation_1))
+    extend_3 = join_2
+    return (extend_3,)
+
+
+def _steps_X_dot(m, X, V):
+    take_1 = V[3:6]
+    take_2 = X[3:7]
+    quaternion_rate_3 = _quaternion_rate(take_2, take_1)
+    take_4 = V[0:3]
+    join_5 = np.concatenate((take_4, quaternion_rate_3))
+    return (join_5,)
+
+
+def _steps_pose_from_rpy(m, t, rpy):
+    quaternion_of_rpy_1 = _quaternion_of_rpy(rpy)
+    join_2 = np.concatenate((t, quaternion_of_rpy_1))
+    extend_3 = join_2
+    return (extend_3,)
 
 
 def M(X, p=None, *, q0=None):
-    """Inertia matrix (..., NV, NV) at X (..., NQ)."""
-    return _evaluate(_M, p, q0, X=_vector("M", "X", X, NQ))[0]
+    """Inertia matrix M.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        q0: first guess of the displacements, by default HOME_Q (..., NJ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        M: inertia matrix M (..., NV, NV).
+    """
+    return _call(
+        "M", _steps_M, p,
+        ("X", X, (NQ,)),
+        ("q0", q0, (NJ,), HOME_Q),
+    )
 
 
 def Z(X, V, p=None, *, q0=None):
-    """Velocity and gravity terms (..., NV) at X (..., NQ), V (..., NV)."""
-    return _evaluate(_Z, p, q0, X=_vector("Z", "X", X, NQ), V=_vector("Z", "V", V, NV))[0]
+    """Velocity and gravity terms Z.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        q0: first guess of the displacements, by default HOME_Q (..., NJ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        Z: velocity and gravity terms Z (..., NV).
+    """
+    return _call(
+        "Z", _steps_Z, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+        ("q0", q0, (NJ,), HOME_Q),
+    )
 
 
 def H(X, p=None, *, q0=None):
-    """Force transformation (..., NV, NU): actuators to task space."""
-    return _evaluate(_H, p, q0, X=_vector("H", "X", X, NQ))[0]
+    """Force transformation H: actuators to task space.
 
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        q0: first guess of the displacements, by default HOME_Q (..., NJ).
+        p: parameters, by default those of the specification.
 
-def dynamics(X, V, p=None, *, q0=None):
-    """M, Z and H together, sharing the work."""
-    X, V = _vector("dynamics", "X", X, NQ), _vector("dynamics", "V", V, NV)
-    return tuple(_evaluate(_DYNAMICS, p, q0, X=X, V=V)[:3])
-
-
-def _external(function, wrench):
-    """The wrench (..., NW) as a generalised force (..., NV); extra coordinates get none."""
-    if wrench is None:
-        return np.zeros(NV)
-    wrench = _vector(function, "wrench", wrench, NW)
-    return np.concatenate((wrench, np.zeros((*wrench.shape[:-1], NV - NW))), axis=-1)
-
-
-def _together(failed, *arrays):
-    """The arrays with NaN in every row in which one of them failed."""
-    for array, axes in arrays:
-        array[np.broadcast_to(failed, array.shape[: array.ndim - axes])] = np.nan
-    return [array for array, _ in arrays]
-
-
-def _known(array, axes, *inputs):
-    """The array, NaN in every row in which one of its entries or an input is not finite."""
-    failed = ~np.isfinite(array).all(axis=tuple(range(-axes, 0)))
-    for value in inputs:
-        failed = failed | ~np.isfinite(value).all(axis=-1)
-    return _together(failed, (array, axes))[0]
-
-
-def _weights(weights):
-    """The weights (..., NU) of the drives."""
-    if weights is None:
-        return np.ones(NU)
-    weights = _vector("inverse_dynamics", "weights", weights, NU)
-    if not np.all((weights > 0.0) & (weights < np.inf)):
-        raise ValueError("inverse_dynamics: weights must be positive and finite")
-    return weights
-
-
-def inverse_dynamics(X, V, A, p=None, *, wrench=None, weights=None, q0=None):
-    """Actuator forces tau (..., NU) for the acceleration A (..., NV), by Eq. 3.
-
-    The wrench (..., NW) acts on the platform. weights: unused, as the drives are not redundant.
+    Returns:
+        H: force transformation H: actuators to task space (..., NV, NU).
     """
-    X, V = _vector("inverse_dynamics", "X", X, NQ), _vector("inverse_dynamics", "V", V, NV)
-    A = _vector("inverse_dynamics", "A", A, NV)
-    weights, external = _weights(weights), _external("inverse_dynamics", wrench)
-    _lead(X=X, V=V, A=A, wrench=external, weights=weights, q0=_guess(q0))
-    required, matrix, *rest = _evaluate(_REQUIRED, p, q0, X=X, V=V, A=A)
-    force = required - external
-    return _drive_forces(matrix, rest[0] if rest else None, force, weights)
-
-
-def forward_dynamics(X, V, tau, p=None, *, wrench=None, q0=None):
-    """Acceleration A (..., NV) under actuator forces tau (..., NU) and the wrench."""
-    X, V = _vector("forward_dynamics", "X", X, NQ), _vector("forward_dynamics", "V", V, NV)
-    tau, external = _vector("forward_dynamics", "tau", tau, NU), _external("forward_dynamics", wrench)
-    _lead(X=X, V=V, tau=tau, wrench=external, q0=_guess(q0))
-    inertia, bias, matrix, *rest = _evaluate(_DYNAMICS, p, q0, X=X, V=V)
-    with np.errstate(all="ignore"):
-        force = (matrix @ tau[..., None])[..., 0] + external - bias
-    return _solve(inertia, force)
-
-
-def complete_acceleration(X, V, A, p=None, *, wrench=None, q0=None):
-    """A: there are no passive extra coordinates, whose accelerations would have to follow."""
-    X, V = _vector("complete_acceleration", "X", X, NQ), _vector("complete_acceleration", "V", V, NV)
-    A, external = _vector("complete_acceleration", "A", A, NV), _external("complete_acceleration", wrench)
-    p, lead = _given(p), _lead(X=X, V=V, A=A, wrench=external, q0=_guess(q0))
-    return _known(np.array(np.broadcast_to(A, (*lead, NV))), 1)
-
-
-def _drive_forces(matrix, directions, force, weights):
-    """tau with H tau = force."""
-    del directions, weights
-    rows = list(_DRIVEN_ROWS)
-    tau = _solve(matrix[..., rows, :], force[..., rows])
-    return _known(tau, 1, force)
-
-
-def null_space(X, p=None, *, q0=None):
-    """Basis (..., NU, 0) of the tau with H tau = 0: empty, the drives are not redundant."""
-    X = _vector("null_space", "X", X, NQ)
-    _given(p)
-    return np.zeros((*_lead(X=X, q0=_guess(q0)), NU, 0))
-
-
-_MOMENT_ROWS = (3, 4, 5)  # rows of H that are moments
-
-
-def condition(X, p=None, *, length=None, q0=None):
-    """How far a pose is from singularities: sigma (..., 6), legs (..., 6), status (...).
-
-    sigma: singular values of H in descending order, moment rows divided by `length` [m], as a
-    rule the rms distance of the platform points from their centroid (where they coincide, the
-    rms size of the legs).  legs: for every leg the least tested pivot as a fraction of its scale;
-    a leg is refused at 1.5e-8.  status: 0 OK, 1 unreachable, 2 singular leg, 3 invalid, 4 not
-    converged, as in C; sigma and legs are NaN where it is not 0.
-    """
-    return _condition("condition", X, p, length, q0)
-
-
-def _condition(name, X, p, length, q0, columns=NU):
-    """sigma of the first columns of H, margins of the legs, status codes."""
-    X = _vector(name, "X", X, NQ)
-    p = _given(p)
-    if length is not None:
-        size = _numbers(name, "length", length)
-        if size.shape or not 0.0 < size < np.inf:
-            raise ValueError(f"{name}: length is {length!r}, expected a positive number")
-    q0 = _guess(q0)
-    q = _closed(X, q0, p)
-    lead = q.shape[:-1]
-    guess = np.broadcast_to(q0, q.shape).reshape(-1, NJ)
-    vectors = {"X": np.broadcast_to(X, (*lead, NQ)).reshape(-1, NQ), "q": q.reshape(-1, NJ)}
-    states = len(vectors["X"])
-    made = [np.zeros((states, int(np.prod(shape, dtype=int)))) for _, shape in _CONDITION.arrays]
-    flat = [np.ascontiguousarray(vectors[k].T) for k in _CONDITION.inputs]
-    with np.errstate(all="ignore"):
-        given = _CONDITION.before.function(_CONDITION.constants(p)[0], *flat, _Arrays)[0]
-        _run_block(_CONDITION, p, flat, made)
-        found = {n: v.reshape(states, *s) for v, (n, s) in zip(made, _CONDITION.arrays)}
-        spread, legs_size = found["lengths"].T
-        if length is None:
-            length = np.where(spread > 1e-9 * legs_size, spread, legs_size)[:, None, None]
-        matrix = found["H"]
-        matrix[:, list(_MOMENT_ROWS)] /= length
-        finite = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(found["pivots"]).all(axis=1)
-        status = np.select(
-            [
-                ~(np.isfinite(vectors["X"]).all(axis=1) & np.isfinite(guess).all(axis=1) & given),
-                np.isnan(vectors["q"]).any(axis=1),
-                ~(found["reach"] >= 0.0).all(axis=1),
-                ~(found["pivots"] > _TOLERANCE).all(axis=1),
-                ~finite,
-            ],
-            [3, 4, 1, 2, 3],
-            0,
-        )
-    good = (status == 0)[:, None]
-    sigma = np.linalg.svd(np.where(good[..., None], matrix[..., :columns], 0.0), compute_uv=False)
-    sigma, legs = np.where(good, sigma, np.nan), np.where(good, found["pivots"], np.nan)
-    return (
-        sigma.reshape(*lead, sigma.shape[1]), legs.reshape(*lead, legs.shape[1]),
-        status.reshape(lead)[()],
+    return _call(
+        "H", _steps_H, p,
+        ("X", X, (NQ,)),
+        ("q0", q0, (NJ,), HOME_Q),
     )
 
 
 def inverse_kinematics(X, p=None, *, q0=None):
-    """Displacements q (..., NJ) of all joints at X.
+    """Displacements q of all joints.
 
-    Where there is no closed form they are iterated from q0 (default: home), NaN if Newton does
-    not converge, or to a closure that is not on the assembly branch of home, as the sign of the
+    Where there is no closed form they are iterated from q0: impossible where Newton does not
+    converge, or to a closure that is not on the assembly branch of home, as the sign of the
     closure's determinant tells; from the last q of a path in small steps they stay on it.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        q0: first guess of the displacements, by default HOME_Q (..., NJ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        q: displacements q of all joints (..., NJ).
     """
-    return _evaluate(_INVERSE_KINEMATICS, p, q0, X=_vector("inverse_kinematics", "X", X, NQ))[0]
+    return _call(
+        "inverse_kinematics", _steps_inverse_kinematics, p,
+        ("X", X, (NQ,)),
+        ("q0", q0, (NJ,), HOME_Q),
+    )
 
 
 def joint_rates(X, V, p=None, *, q0=None):
-    """Rates of all joints (..., NJ)."""
-    X, V = _vector("joint_rates", "X", X, NQ), _vector("joint_rates", "V", V, NV)
-    return _evaluate(_JOINT_RATES, p, q0, X=X, V=V)[0]
+    """Rates of all joints.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        q0: first guess of the displacements, by default HOME_Q (..., NJ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        qd: rates of all joints (..., NJ).
+    """
+    return _call(
+        "joint_rates", _steps_joint_rates, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+        ("q0", q0, (NJ,), HOME_Q),
+    )
 
 
 def joint_accelerations(X, V, A, p=None, *, q0=None):
-    """Accelerations of all joints (..., NJ)."""
-    X, V = _vector("joint_accelerations", "X", X, NQ), _vector("joint_accelerations", "V", V, NV)
-    return _evaluate(
-        _JOINT_ACCELERATIONS, p, q0, X=X, V=V, A=_vector("joint_accelerations", "A", A, NV))[0]
+    """Accelerations of all joints.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        A: acceleration (..., NV).
+        q0: first guess of the displacements, by default HOME_Q (..., NJ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        qdd: accelerations of all joints (..., NJ).
+    """
+    return _call(
+        "joint_accelerations", _steps_joint_accelerations, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+        ("A", A, (NV,)),
+        ("q0", q0, (NJ,), HOME_Q),
+    )
+
+
+def dynamics(X, V, p=None, *, q0=None):
+    """M, Z and H together, sharing the work.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        q0: first guess of the displacements, by default HOME_Q (..., NJ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        M: inertia matrix (..., NV, NV).
+        Z: velocity and gravity terms (..., NV).
+        H: force transformation (..., NV, NU).
+    """
+    return _call(
+        "dynamics", _steps_dynamics, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+        ("q0", q0, (NJ,), HOME_Q),
+    )
+
+
+def inverse_dynamics(X, V, A, p=None, *, wrench=None, weights=None, q0=None):
+    """Actuator forces tau for the acceleration A, by Eq. 3.
+
+    The weights are not used, as the actuators are not redundant.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        A: acceleration (..., NV).
+        wrench: external wrench on the platform, by default zero (..., NW).
+        weights: positive weights of the actuator forces: least sum of weights tau^2, by default
+            one (..., NU).
+        q0: first guess of the displacements, by default HOME_Q (..., NJ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        tau: actuator forces [N or N m] (..., NU).
+    """
+    return _call(
+        "inverse_dynamics", _steps_inverse_dynamics, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+        ("A", A, (NV,)),
+        ("wrench", wrench, (NW,), 0.0),
+        ("weights", weights, (NU,), 1.0, "positive"),
+        ("q0", q0, (NJ,), HOME_Q),
+    )
+
+
+def forward_dynamics(X, V, tau, p=None, *, wrench=None, q0=None):
+    """Acceleration A under the actuator forces tau and the wrench.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        tau: actuator forces [N or N m] (..., NU).
+        wrench: external wrench on the platform, by default zero (..., NW).
+        q0: first guess of the displacements, by default HOME_Q (..., NJ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        A: acceleration (..., NV).
+    """
+    return _call(
+        "forward_dynamics", _steps_forward_dynamics, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+        ("tau", tau, (NU,)),
+        ("wrench", wrench, (NW,), 0.0),
+        ("q0", q0, (NJ,), HOME_Q),
+    )
+
+
+def complete_acceleration(X, V, A, p=None, *, wrench=None, q0=None):
+    """A with the entries of passive extra coordinates that the others allow.
+
+    It is A: there are no passive extra coordinates, whose accelerations would follow.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        A: acceleration (..., NV).
+        wrench: external wrench on the platform, by default zero (..., NW).
+        q0: first guess of the displacements, by default HOME_Q (..., NJ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        completed: acceleration (..., NV).
+    """
+    return _call(
+        "complete_acceleration", _steps_complete_acceleration, p,
+        ("X", X, (NQ,), None, "unused"),
+        ("V", V, (NV,), None, "unused"),
+        ("A", A, (NV,)),
+        ("wrench", wrench, (NW,), 0.0, "unused"),
+        ("q0", q0, (NJ,), HOME_Q, "unused"),
+    )
 
 
 def leg_reactions(X, V, A, p=None, *, wrench=None, q0=None):
-    """Force and moment of each leg on the platform (..., legs, 6) at its platform joint, base axes.
+    """Force and moment of each leg on the platform at its platform joint, base axes.
 
-    The drives give the forces of `inverse_dynamics`.
+    The actuators give the forces of `inverse_dynamics`.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        A: acceleration (..., NV).
+        wrench: external wrench on the platform, by default zero (..., NW).
+        q0: first guess of the displacements, by default HOME_Q (..., NJ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        forces: leg on platform [N, N m] (..., 6, 6).
     """
-    X, V = _vector("leg_reactions", "X", X, NQ), _vector("leg_reactions", "V", V, NV)
-    A = _vector("leg_reactions", "A", A, NV)
-    wrench = None if wrench is None else _vector("leg_reactions", "wrench", wrench, NW)
-    forces, drive, *directions = _evaluate(_LEGS_FORCE, p, q0, X=X, V=V, A=A)
-    tau = inverse_dynamics(X, V, A, p, wrench=wrench, q0=q0)
-    parts = [(tau, drive, _ACTUATOR_LEGS)]
-    forces = np.array(np.broadcast_to(forces, (*parts[0][0].shape[:-1], *forces.shape[-2:])))
-    for amounts, vectors, legs in parts:
-        for k, leg in enumerate(legs):
-            forces[..., leg, :] += amounts[..., k, None] * vectors[..., k, :]
-    return _together(np.isnan(forces).any(axis=(-1, -2)), (forces, 2))[0]
+    return _call(
+        "leg_reactions", _steps_leg_reactions, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+        ("A", A, (NV,)),
+        ("wrench", wrench, (NW,), 0.0),
+        ("q0", q0, (NJ,), HOME_Q),
+    )
 
 
 def energy(X, V, p=None, *, q0=None):
-    """Kinetic and potential energy (...,); the latter is zero at the base origin."""
-    X, V = _vector("energy", "X", X, NQ), _vector("energy", "V", V, NV)
-    _lead(X=X, V=V, q0=_guess(q0))
-    inertia = M(X, p, q0=q0)
-    with np.errstate(all="ignore"):
-        kinetic = 0.5 * np.einsum("...i,...ij,...j->...", V, inertia, V)
-    potential = _evaluate(_POTENTIAL, p, q0, X=X)[0][..., 0]
-    known = np.where(np.isfinite(kinetic) & np.isfinite(potential), 0.0, np.nan)
-    return kinetic + known, potential + known
+    """Kinetic and potential energy [J]; the latter is zero at the base origin.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        q0: first guess of the displacements, by default HOME_Q (..., NJ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        kinetic: kinetic energy [J] (...,).
+        potential: potential energy [J] (...,).
+    """
+    return _call(
+        "energy", _steps_energy, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+        ("q0", q0, (NJ,), HOME_Q),
+    )
+
+
+def null_space(X, p=None, *, q0=None):
+    """Orthonormal basis of the tau with H tau = 0.
+
+    It is empty: the actuators are not redundant.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        q0: first guess of the displacements, by default HOME_Q (..., NJ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        basis: columns (..., NU, 0).
+    """
+    return _call(
+        "null_space", _steps_null_space, p,
+        ("X", X, (NQ,)),
+        ("q0", q0, (NJ,), HOME_Q),
+    )
+
+
+def condition(X, p=None, *, length=None, q0=None):
+    """How far a pose is from singularities: singular values of H, rows of moments divided by a
+    length; for every leg the least tested pivot as a fraction of its scale.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        length: by which rows of moments are divided [m]; by default the rms distance of the
+            platform points from their centroid, or where they coincide the rms size of the legs
+            (...,).
+        q0: first guess of the displacements, by default HOME_Q (..., NJ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        sigma: singular values, in descending order (..., 6).
+        legs: least pivots; a leg is refused at 1.5e-8 (..., 6).
+        status: 0 OK, 1 unreachable, 2 singular leg, 3 invalid, 4 not converged, as in C (...).
+    """
+    return _call(
+        "condition", _steps_condition, p,
+        ("X", X, (NQ,)),
+        ("length", length, (), 0.0, "positive"),
+        ("q0", q0, (NJ,), HOME_Q),
+        mode=_Judged,
+    )
 
 
 def forward_kinematics(q_actuated, X0, p=None, *, q0=None):
-    """X at which the driven joints stand at q_actuated (..., NU), by Gauss-Newton from X0.
+    """X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0.
 
-    Extra coordinates that the drives do not determine stay.  NaN where no X is found.
+    Extra coordinates that actuators do not determine stay.
+
+    Impossible where no pose is found.
+
+    Args:
+        q_actuated: displacements of the actuated joints [m or rad] (..., NU).
+        X0: first guess of the pose (..., NQ).
+        q0: first guess of the displacements, by default HOME_Q (..., NJ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        X: pose (..., NQ).
     """
-    q_actuated = _vector("forward_kinematics", "q_actuated", q_actuated, NU)
-    X0, p = _vector("forward_kinematics", "X0", X0, NQ), _given(p)
-    q0 = _guess(q0)
-    lead = _lead(q_actuated=q_actuated, X0=X0, q0=q0)
-    target = np.broadcast_to(q_actuated, (*lead, NU)).reshape(-1, NU)
-    X = np.broadcast_to(X0, (*lead, NQ)).reshape(-1, NQ).copy()
-    guess = np.broadcast_to(q0, (*lead, NJ)).reshape(-1, NJ)
-    found = [_find_pose(*state, p, g) for *state, g in zip(target, X, guess)]
-    return np.array(found).reshape(*lead, NQ)
-
-
-def _mismatch(q_actuated, X, p, q0):
-    """Residual of driven joints: turns modulo 2 pi."""
-    gap = q_actuated - inverse_kinematics(X, p, q0=q0)[list(_DRIVEN_JOINTS)]
-    gap[list(_TURNING_DRIVES)] = np.remainder(gap[list(_TURNING_DRIVES)] + np.pi, 2 * np.pi) - np.pi
-    return gap
-
-
-def _find_pose(q_actuated, X, p, q0):
-    """Gauss-Newton with step halving for one state."""
-    failure = np.full(NQ, np.nan)
-    if not (np.isfinite(q_actuated).all() and np.isfinite(X).all()):
-        return failure
-    gap = _mismatch(q_actuated, X, p, q0)
-    for _ in range(50):
-        size = np.max(np.abs(gap), initial=0.0)
-        if not np.isfinite(size):
-            return failure
-        if size < 1e-13:
-            break
-        jacobian = H(X, p, q0=q0)
-        if np.isnan(jacobian).any():
-            return failure
-        step = np.linalg.lstsq(jacobian.T, gap, rcond=1e-10)[0]
-        for halving in range(12):
-            trial = _moved(X, step * 0.5**halving)
-            trial_gap = _mismatch(q_actuated, trial, p, q0)
-            if np.max(np.abs(trial_gap)) < size:
-                break
-        else:
-            break
-        X, gap = trial, trial_gap
-    return X if np.max(np.abs(gap), initial=0.0) < 1e-9 else failure
-
-
-def _rotations(R, n, nearest):
-    """Rotation matrices (..., n, n): R as it is, or the nearest; those with NaN stay."""
-    R = np.array(_numbers("pose", "R", R))
-    if R.shape[-2:] != (n, n):
-        raise ValueError(f"pose: R has shape {R.shape}, expected (..., {n}, {n})")
-    known = np.isfinite(R).all(axis=(-1, -2))
-    if nearest:
-        R[known] = _nearest(R[known])
-    if not np.all(_are_rotations(R[known])):
-        raise ValueError(
-            "pose: R is no rotation matrix, with orthonormal rows to 1e-06 and determinant +1;"
-            " nearest=True takes the nearest one")
-    return R
-
-
-def _nearest(R):
-    """The nearest rotations (k, n, n); ValueError where several are."""
-    largest = np.max(np.abs(R), axis=(1, 2), keepdims=True)
-    u, s, vt = np.linalg.svd(R / np.where(largest > 0.0, largest, 1.0))
-    sign = np.sign(np.linalg.det(u @ vt))
-    if np.any(s[:, -2] + sign * s[:, -1] <= 1e-06 * s[:, 0]):
-        raise ValueError("pose: R has no single nearest rotation")
-    u[:, :, -1] *= sign[:, None]
-    return u @ vt
-
-
-_Q = 3  # where the quaternion begins in X
+    return _call(
+        "forward_kinematics", _steps_forward_kinematics, p,
+        ("q_actuated", q_actuated, (NU,)),
+        ("X0", X0, (NQ,)),
+        ("q0", q0, (NJ,), HOME_Q),
+    )
 
 
 def rotation(X):
-    """base_R_platform (..., 3, 3) at X (..., NQ); the quaternion need not be normalised.
+    """base_R_platform at X; a quaternion need not be normalised.
 
-    NaN where it is zero or its squared length overflows.
+    Impossible where the quaternion is zero or its squared length overflows.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+
+    Returns:
+        R: rotation matrix base_R_platform (..., 3, 3).
     """
-    X = _vector("rotation", "X", X, NQ)
-    with np.errstate(all="ignore"):
-        x, y, z, w = np.moveaxis(_scaled(X[..., _Q : _Q + 4]), -1, 0)
-        xx, yy, zz, ww = x * x, y * y, z * z, w * w
-        n = xx + yy + zz + ww
-        rows = (
-            ((xx + ww - (yy + zz)) / n, 2 * (x * y - w * z) / n, 2 * (x * z + w * y) / n),
-            (2 * (x * y + w * z) / n, (yy + ww - (xx + zz)) / n, 2 * (y * z - w * x) / n),
-            (2 * (x * z - w * y) / n, 2 * (y * z + w * x) / n, (zz + ww - (xx + yy)) / n),
-        )
-    return _known(np.stack([np.stack(row, axis=-1) for row in rows], axis=-2), 2, X)
-
-
-def _scaled(q):
-    """Quaternions (..., 4) with largest entry 1, so that squares of tiny ones keep their digits."""
-    size = np.max(np.abs(q), axis=-1, keepdims=True)
-    return q / np.where(np.isfinite(np.sum(q * q, axis=-1, keepdims=True)), size, np.nan)
-
-
-def _unit(q):
-    """Quaternions (..., 4) of length 1."""
-    q = _scaled(q)
-    return q / np.linalg.norm(q, axis=-1, keepdims=True)
+    return _call(
+        "rotation", _steps_rotation, None,
+        ("X", X, (NQ,)),
+    )
 
 
 def pose(t, R, *, nearest=False):
-    """X of the platform at origin t (..., 3) with rotation matrix R (..., 3, 3); extra coordinates zero.
+    """X of the platform at origin t with rotation matrix R; extra coordinates zero.
 
-    ValueError where R has not orthonormal rows, to 1e-06, and determinant +1.  With nearest=True
-    the rotation is taken that is nearest to R (least sum of squared differences of entries).
+    Args:
+        t: position of the platform origin [m] (..., 3).
+        R: rotation matrix base_R_platform (..., 3, 3).
+        nearest: take the rotation that is nearest to R: the least sum of squared differences.
+
+    Returns:
+        X: pose (..., NQ).
+
+    Raises:
+        ValueError: R has not orthonormal rows, to 1e-06, and determinant +1, or no single nearest
+            rotation.
     """
-    R = _rotations(R, 3, nearest)
-    with np.errstate(all="ignore"):
-        return _with_position("pose", t, _quaternion(R))
-
-
-def _quaternion(R):
-    """x, y, z, w of rotation matrices (..., 3, 3)."""
-    d = np.einsum("...ii->...i", R)
-    # each candidate is four times the quaternion times one of its entries; take the longest
-    s = (R[..., 2, 1] + R[..., 1, 2], R[..., 0, 2] + R[..., 2, 0], R[..., 1, 0] + R[..., 0, 1])
-    a = (R[..., 2, 1] - R[..., 1, 2], R[..., 0, 2] - R[..., 2, 0], R[..., 1, 0] - R[..., 0, 1])
-    x, y, z = d[..., 0], d[..., 1], d[..., 2]
-    candidates = np.stack([
-        np.stack((1 + x - y - z, s[2], s[1], a[0]), axis=-1),
-        np.stack((s[2], 1 - x + y - z, s[0], a[1]), axis=-1),
-        np.stack((s[1], s[0], 1 - x - y + z, a[2]), axis=-1),
-        np.stack((a[0], a[1], a[2], 1 + x + y + z), axis=-1),
-    ], axis=-2)
-    best = np.argmax(np.linalg.norm(candidates, axis=-1), axis=-1)
-    q = np.take_along_axis(candidates, best[..., None, None], axis=-2)[..., 0, :]
-    return _unit(q)
-
-
-def _with_position(function, t, q):
-    """X of a position and a quaternion; extra coordinates zero."""
-    t = _vector(function, "t", t, _Q)
-    lead = _lead(t=t, rotation=q)
-    parts = [np.broadcast_to(v, lead + v.shape[-1:]) for v in (t, q)]
-    return _known(np.concatenate((*parts, np.zeros((*lead, NQ - _Q - 4))), axis=-1), 1)
-
-
-def pose_from_rpy(t, rpy):
-    """X from roll, pitch, yaw (..., 3) about the fixed axes x, y, z, in that order."""
-    half = 0.5 * _vector("pose_from_rpy", "rpy", rpy, 3)
-    with np.errstate(all="ignore"):
-        cosines, sines = np.cos(half), np.sin(half)
-    (cx, cy, cz), (sx, sy, sz) = np.moveaxis(cosines, -1, 0), np.moveaxis(sines, -1, 0)
-    q = np.stack((
-        sx * cy * cz - cx * sy * sz, cx * sy * cz + sx * cy * sz,
-        cx * cy * sz - sx * sy * cz, cx * cy * cz + sx * sy * sz,
-    ), axis=-1)
-    return _with_position("pose_from_rpy", t, q)
+    return _call(
+        "pose", _steps_pose, None,
+        ("t", t, (3,)),
+        ("R", _rotations(R, 3, nearest), (3, 3)),
+    )
 
 
 def X_dot(X, V):
-    """Rate of X (..., NQ) at the velocity V (..., NV)."""
-    X, V = _vector("X_dot", "X", X, NQ), _vector("X_dot", "V", V, NV)
-    lead, q, w = _lead(X=X, V=V), X[..., _Q : _Q + 4], V[..., _Q : _Q + 3]
-    with np.errstate(all="ignore"):
-        vector = 0.5 * (q[..., 3:] * w + np.cross(w, q[..., :3]))
-        scalar = -0.5 * np.sum(w * q[..., :3], axis=-1, keepdims=True)
-    parts = (V[..., :_Q], vector, scalar, V[..., _Q + 3 :])
-    rate = np.concatenate([np.broadcast_to(v, lead + v.shape[-1:]) for v in parts], axis=-1)
-    return _known(rate, 1, X)
+    """Rate of X at the velocity V.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+
+    Returns:
+        X_dot: rate of X (..., NQ).
+    """
+    return _call(
+        "X_dot", _steps_X_dot, None,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+    )
 
 
-def _moved(X, step):
-    """X moved by a small twist: the quaternion turns by its angular part."""
-    w = step[_Q : _Q + 3]
-    angle = np.linalg.norm(w)
-    turn = np.append(w * (0.5 * np.sinc(angle / (2 * np.pi))), np.cos(0.5 * angle))
-    a, q = turn, _unit(X[_Q : _Q + 4])
-    vector = a[3] * q[:3] + q[3] * a[:3] + np.cross(a[:3], q[:3])
-    scalar = a[3] * q[3] - a[:3] @ q[:3]
-    return np.concatenate((X[:_Q] + step[:_Q], vector, [scalar], X[_Q + 4 :] + step[_Q + 3 :]))
+def pose_from_rpy(t, rpy):
+    """X from roll, pitch, yaw about the fixed axes x, y, z, in that order.
+
+    Args:
+        t: position of the platform origin [m] (..., 3).
+        rpy: roll, pitch, yaw about the fixed axes x, y, z [rad] (..., 3).
+
+    Returns:
+        X: pose (..., NQ).
+    """
+    return _call(
+        "pose_from_rpy", _steps_pose_from_rpy, None,
+        ("t", t, (3,)),
+        ("rpy", rpy, (3,)),
+    )

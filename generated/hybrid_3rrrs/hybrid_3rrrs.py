@@ -19,7 +19,9 @@ arrays, ValueError for wrong shapes.  p, a Parameters of this module, follows wh
 position or keyword; all else is given by keyword.
 """
 
+import math
 import warnings
+from itertools import compress
 from numbers import Real
 
 import numpy as np
@@ -31,11 +33,12 @@ __all__ = [
     "NC",
     "NW",
     "NJ",
+    "H",
     "HOME_Q",
     "HOME_X",
-    "H",
     "M",
     "Parameters",
+    "X_dot",
     "Z",
     "complete_acceleration",
     "condition",
@@ -52,7 +55,6 @@ __all__ = [
     "pose",
     "pose_from_rpy",
     "rotation",
-    "X_dot",
 ]
 
 NQ = 7
@@ -65,13 +67,7 @@ NJ = 9
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
 
-_LEGS = {  # positions of the legs of each type
-    "rrrs": (0, 1, 2),
-}
 _DRIVEN_JOINTS = (0, 1, 3, 4, 6, 7)
-_TURNING_DRIVES = (0, 1, 2, 3, 4, 5)
-_ACTUATOR_LEGS = (0, 0, 1, 1, 2, 2)
-_DRIVEN_ROWS = (0, 1, 2, 3, 4, 5)
 
 _DEFAULTS = {
     "gravity": [0.0, 0.0, -9.81],
@@ -301,24 +297,32 @@ def _unfit(value):
     return "" if array.dtype.kind in "iuf" else _KINDS.get(array.dtype.kind, array.dtype.name)
 
 
-def _vector(function, name, value, size):
-    """An argument as an array of floats (..., size), or an error that names it."""
+def _argument(function, name, value, shape, default=None, rule=""):
+    """An argument as an array of floats (..., *shape), or an error that names it."""
+    if value is None and default is not None:
+        return np.full(shape, default)
+    function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
-        value = _numbers(function, name, value)
-    if value.ndim == 0 or value.shape[-1] != size:
-        raise ValueError(f"{function}: {name} has shape {value.shape}, expected (..., {size})")
-    return value
+        array = _numbers(function, name, value)
+    if not shape:
+        if array.shape or not 0.0 < array < np.inf:
+            raise ValueError(f"{function}: {name} is {value!r}, expected a positive number")
+    elif array.shape[-len(shape) :] != shape:
+        wanted = ", ".join(map(str, ("...", *shape)))
+        raise ValueError(f"{function}: {name} has shape {array.shape}, expected ({wanted})")
+    elif rule == "positive" and not np.all((array > 0.0) & (array < np.inf)):
+        raise ValueError(f"{function}: {name} must be positive and finite")
+    return array
 
 
-def _lead(**arguments):
-    """Leading shape that arguments (..., n) have in common; ValueError that names them if none."""
-    leads = [v.shape[:-1] for v in arguments.values()]
-    if not any(leads):
+def _lead(leads):
+    """Leading shape that arguments have in common; ValueError that names them if none."""
+    if not any(leads.values()):
         return ()
     try:
-        return np.broadcast_shapes(*leads)
+        return np.broadcast_shapes(*leads.values())
     except ValueError:
-        shapes = ", ".join(f"{name} {lead}" for name, lead in zip(arguments, leads))
+        shapes = ", ".join(f"{name} {lead}" for name, lead in leads.items())
         raise ValueError(f"leading dimensions do not broadcast: {shapes}") from None
 
 
@@ -410,7 +414,6 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
-    _rrrs = (len(_LEGS["rrrs"]),)
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     gravity_z = p.gravity[2]
@@ -626,20 +629,20 @@ def _prepare(p):
     inv_rho2_2_t_4 = 1.0/rho2_2_t
     # (rrrs-V7) reciprocal vector 1
     inv_size = 1.0/size
-    total_rrrs = np.sum(np.broadcast_to(rrrs_link3_mass, _rrrs))
-    total_rrrs_x = np.sum(np.broadcast_to(h_star_t_4, _rrrs))
-    total_rrrs_y = np.sum(np.broadcast_to(h_star_t_5, _rrrs))
-    total_rrrs_z = np.sum(np.broadcast_to(h_star_t_6, _rrrs))
-    total_rrrs_xx = np.sum(np.broadcast_to(J_star_t_15, _rrrs))
-    total_rrrs_xy = np.sum(np.broadcast_to(J_star_t_16, _rrrs))
-    total_rrrs_xz = np.sum(np.broadcast_to(J_star_t_17, _rrrs))
-    total_rrrs_yy = np.sum(np.broadcast_to(J_star_t_18, _rrrs))
-    total_rrrs_yz = np.sum(np.broadcast_to(J_star_t_19, _rrrs))
-    total_rrrs_zz = np.sum(np.broadcast_to(J_star_t_20, _rrrs))
-    total_rrrs_x_2 = np.sum(np.broadcast_to(rrrs_platform_point_x, _rrrs))
-    total_rrrs_y_2 = np.sum(np.broadcast_to(rrrs_platform_point_y, _rrrs))
-    total_rrrs_z_2 = np.sum(np.broadcast_to(rrrs_platform_point_z, _rrrs))
-    total_rrrs_2 = np.sum(np.broadcast_to(size_t_3, _rrrs))
+    total_rrrs = np.sum(np.broadcast_to(rrrs_link3_mass, 3))
+    total_rrrs_x = np.sum(np.broadcast_to(h_star_t_4, 3))
+    total_rrrs_y = np.sum(np.broadcast_to(h_star_t_5, 3))
+    total_rrrs_z = np.sum(np.broadcast_to(h_star_t_6, 3))
+    total_rrrs_xx = np.sum(np.broadcast_to(J_star_t_15, 3))
+    total_rrrs_xy = np.sum(np.broadcast_to(J_star_t_16, 3))
+    total_rrrs_xz = np.sum(np.broadcast_to(J_star_t_17, 3))
+    total_rrrs_yy = np.sum(np.broadcast_to(J_star_t_18, 3))
+    total_rrrs_yz = np.sum(np.broadcast_to(J_star_t_19, 3))
+    total_rrrs_zz = np.sum(np.broadcast_to(J_star_t_20, 3))
+    total_rrrs_x_2 = np.sum(np.broadcast_to(rrrs_platform_point_x, 3))
+    total_rrrs_y_2 = np.sum(np.broadcast_to(rrrs_platform_point_y, 3))
+    total_rrrs_z_2 = np.sum(np.broadcast_to(rrrs_platform_point_z, 3))
+    total_rrrs_2 = np.sum(np.broadcast_to(size_t_3, 3))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_rrrs
     # (L2) first moment about the platform origin
@@ -667,148 +670,207 @@ def _prepare(p):
     b_c_z = 0.3333333333333333*total_rrrs_z_2
     # (C3) rms size of the legs, taken where the platform points coincide
     legs_size = spread_t*sqrt(total_rrrs_2)
-    shared = {
-        "J_star_t_22": float(J_star_t_22),
-        "J_star_t_24": float(J_star_t_24),
-        "J_star_xx": float(J_star_xx),
-        "J_star_xy": float(J_star_xy),
-        "J_star_xz": float(J_star_xz),
-        "J_star_yy": float(J_star_yy),
-        "J_star_yz": float(J_star_yz),
-        "J_star_zz": float(J_star_zz),
-        "Z_p_t": float(Z_p_t),
-        "Z_p_t_2": float(Z_p_t_2),
-        "Z_p_t_3": float(Z_p_t_3),
-        "b_c_x": float(b_c_x),
-        "b_c_y": float(b_c_y),
-        "b_c_z": float(b_c_z),
-        "gravity_x": float(gravity_x),
-        "gravity_y": float(gravity_y),
-        "gravity_z": float(gravity_z),
-        "h_star_x": float(h_star_x),
-        "h_star_y": float(h_star_y),
-        "h_star_z": float(h_star_z),
-        "legs_size": float(legs_size),
-        "m_star": float(m_star),
-        "spread_t": float(spread_t),
+    return {
+        "dynamics": (
+        (J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
+                J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x,
+                h_star_y, h_star_z, m_star,),
+            (
+                (3,
+        (J_1_xx, J_2_xx, J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz,
+                    J_3_zz, Jc_2_zz, Kd_2_t, Kd_2_t_2, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz,
+                    Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2, d_Gamma_2_t,
+                    d_Gamma_2_y, d_c_yy, d_phi_3_t, g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x,
+                    h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, inv_rrrs_platform_joint_offset_x,
+                    inv_size_t, inv_size_t_2, rho2_2_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
+                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+                    rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
+                    rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, size,
+                    size_t_3,),
+                ),
+            ),
+        ),
+        "M": (
+        (J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
+                h_star_z, m_star,),
+            (
+                (3,
+        (J_1_xx, J_2_xx, J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz,
+                    J_3_zz, Jc_2_zz, Kd_2_t, Kd_2_t_2, branch_1, branch_2, d_Gamma_2_t,
+                    d_Gamma_2_y, d_c_yy, d_phi_3_t, h_3_x, h_3_y, h_3_z,
+                    inv_rrrs_platform_joint_offset_x, inv_size_t, inv_size_t_2, rho2_2_t,
+                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+                    rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x,
+                    rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
+                    rrrs_platform_point_y, rrrs_platform_point_z, size, size_t_3,),
+                ),
+            ),
+        ),
+        "Z": (
+        (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2,
+                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
+            (
+                (3,
+        (J_1_xx, J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, Kd_2_t, Kd_2_t_2, Sigma_2_xx,
+                    Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1,
+                    branch_2, g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x,
+                    h_3_y, h_3_z, inv_rrrs_platform_joint_offset_x, inv_size_t, inv_size_t_2,
+                    rho2_2_t, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+                    rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x,
+                    rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
+                    rrrs_platform_point_y, rrrs_platform_point_z, size, size_t_3,),
+                ),
+            ),
+        ),
+        "H": (
+        (),
+            (
+                (3,
+        (Kd_2_t, Kd_2_t_2, branch_1, branch_2, inv_size_t, inv_size_t_2, rho2_2_t,
+                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+                    rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x,
+                    rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
+                    rrrs_platform_point_y, rrrs_platform_point_z, size, size_t_3,),
+                ),
+            ),
+        ),
+        "required": (
+        (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
+                gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
+            (
+                (3,
+        (J_1_xx, J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, Kd_2_t, Kd_2_t_2, Sigma_2_xx,
+                    Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1,
+                    branch_2, g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x,
+                    h_3_y, h_3_z, inv_rrrs_platform_joint_offset_x, inv_size_t, inv_size_t_2,
+                    rho2_2_t, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+                    rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x,
+                    rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
+                    rrrs_platform_point_y, rrrs_platform_point_z, size, size_t_3,),
+                ),
+            ),
+        ),
+        "inverse_kinematics": (
+        (),
+            (
+                (3,
+        (Kd_2_t, Kd_2_t_2, branch_1, branch_2, inv_size_t, inv_size_t_2, rho2_2_t,
+                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+                    rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x,
+                    rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
+                    rrrs_platform_point_y, rrrs_platform_point_z, size_t_3,),
+                ),
+            ),
+        ),
+        "joint_rates": (
+        (),
+            (
+                (3,
+        (Kd_2_t, Kd_2_t_2, branch_1, branch_2, inv_rrrs_platform_joint_offset_x, inv_size_t,
+                    inv_size_t_2, rho2_2_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
+                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+                    rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
+                    rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, size,
+                    size_t_3,),
+                ),
+            ),
+        ),
+        "joint_accelerations": (
+        (),
+            (
+                (3,
+        (Kd_2_t, Kd_2_t_2, branch_1, branch_2, inv_rrrs_platform_joint_offset_x, inv_size_t,
+                    inv_size_t_2, rho2_2_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
+                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+                    rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
+                    rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, size,
+                    size_t_3,),
+                ),
+            ),
+        ),
+        "legs": (
+        (gravity_x, gravity_y, gravity_z,),
+            (
+                (3,
+        (J_1_xx, J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, Kd_2_t, Kd_2_t_2, Sigma_2_xx,
+                    Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1,
+                    branch_2, g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x,
+                    h_3_y, h_3_z, inv_rrrs_platform_joint_offset_x, inv_size_t, inv_size_t_2,
+                    rho2_2_t, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+                    rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x,
+                    rrrs_joint3_offset_x, rrrs_link3_mass, rrrs_platform_joint_offset_x,
+                    rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, size,
+                    size_t_3,),
+                ),
+            ),
+        ),
+        "potential": (
+        (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
+            (
+                (3,
+        (Kd_2_t, Kd_2_t_2, b_r0_x, b_r0_y, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_1_x,
+                    h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, inv_size_t,
+                    inv_size_t_2, potential_t, potential_t_2, rho2_2_t, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
+                    rrrs_link1_mass, rrrs_link2_mass, rrrs_platform_joint_offset_x,
+                    rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z,
+                    size_t_3,),
+                ),
+            ),
+        ),
+        "condition": (
+        (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
+            (
+                (3,
+        (Kd_2_t, Kd_2_t_2, branch_1, branch_2, inv_rho2_2_t_4, inv_size, inv_size_t, inv_size_t_2,
+                    inv_size_t_3, rho2_2_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
+                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+                    rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
+                    rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, size,
+                    size_t_3,),
+                ),
+            ),
+        ),
     }
-    legs = {
-        "rrrs": {
-            "J_1_xx": np.broadcast_to(J_1_xx, _rrrs),
-            "J_2_xx": np.broadcast_to(J_2_xx, _rrrs),
-            "J_2_xy": np.broadcast_to(J_2_xy, _rrrs),
-            "J_2_xz": np.broadcast_to(J_2_xz, _rrrs),
-            "J_2_yy": np.broadcast_to(J_2_yy, _rrrs),
-            "J_2_yz": np.broadcast_to(J_2_yz, _rrrs),
-            "J_3_xx": np.broadcast_to(J_3_xx, _rrrs),
-            "J_3_xy": np.broadcast_to(J_3_xy, _rrrs),
-            "J_3_xz": np.broadcast_to(J_3_xz, _rrrs),
-            "J_3_yy": np.broadcast_to(J_3_yy, _rrrs),
-            "J_3_yz": np.broadcast_to(J_3_yz, _rrrs),
-            "J_3_zz": np.broadcast_to(J_3_zz, _rrrs),
-            "Jc_2_zz": np.broadcast_to(Jc_2_zz, _rrrs),
-            "Kd_2_t": np.broadcast_to(Kd_2_t, _rrrs),
-            "Kd_2_t_2": np.broadcast_to(Kd_2_t_2, _rrrs),
-            "Sigma_2_xx": np.broadcast_to(Sigma_2_xx, _rrrs),
-            "Sigma_2_yy": np.broadcast_to(Sigma_2_yy, _rrrs),
-            "Sigma_2_zz": np.broadcast_to(Sigma_2_zz, _rrrs),
-            "Sigma_3_xx": np.broadcast_to(Sigma_3_xx, _rrrs),
-            "Sigma_3_yy": np.broadcast_to(Sigma_3_yy, _rrrs),
-            "Sigma_3_zz": np.broadcast_to(Sigma_3_zz, _rrrs),
-            "b_r0_x": np.broadcast_to(b_r0_x, _rrrs),
-            "b_r0_y": np.broadcast_to(b_r0_y, _rrrs),
-            "branch_1": np.broadcast_to(branch_1, _rrrs),
-            "branch_2": np.broadcast_to(branch_2, _rrrs),
-            "d_Gamma_2_t": np.broadcast_to(d_Gamma_2_t, _rrrs),
-            "d_Gamma_2_y": np.broadcast_to(d_Gamma_2_y, _rrrs),
-            "d_c_yy": np.broadcast_to(d_c_yy, _rrrs),
-            "d_phi_3_t": np.broadcast_to(d_phi_3_t, _rrrs),
-            "g_r0_x": np.broadcast_to(g_r0_x, _rrrs),
-            "g_r0_y": np.broadcast_to(g_r0_y, _rrrs),
-            "g_r0_z": np.broadcast_to(g_r0_z, _rrrs),
-            "h_1_x": np.broadcast_to(h_1_x, _rrrs),
-            "h_1_y": np.broadcast_to(h_1_y, _rrrs),
-            "h_1_z": np.broadcast_to(h_1_z, _rrrs),
-            "h_2_x": np.broadcast_to(h_2_x, _rrrs),
-            "h_2_y": np.broadcast_to(h_2_y, _rrrs),
-            "h_2_z": np.broadcast_to(h_2_z, _rrrs),
-            "h_3_x": np.broadcast_to(h_3_x, _rrrs),
-            "h_3_y": np.broadcast_to(h_3_y, _rrrs),
-            "h_3_z": np.broadcast_to(h_3_z, _rrrs),
-            "inv_rho2_2_t_4": np.broadcast_to(inv_rho2_2_t_4, _rrrs),
-            "inv_rrrs_platform_joint_offset_x": np.broadcast_to(inv_rrrs_platform_joint_offset_x, _rrrs),
-            "inv_size": np.broadcast_to(inv_size, _rrrs),
-            "inv_size_t": np.broadcast_to(inv_size_t, _rrrs),
-            "inv_size_t_2": np.broadcast_to(inv_size_t_2, _rrrs),
-            "inv_size_t_3": np.broadcast_to(inv_size_t_3, _rrrs),
-            "potential_t": np.broadcast_to(potential_t, _rrrs),
-            "potential_t_2": np.broadcast_to(potential_t_2, _rrrs),
-            "rho2_2_t": np.broadcast_to(rho2_2_t, _rrrs),
-            "rrrs_base_frame_xx": np.broadcast_to(rrrs_base_frame_xx, _rrrs),
-            "rrrs_base_frame_xy": np.broadcast_to(rrrs_base_frame_xy, _rrrs),
-            "rrrs_base_frame_xz": np.broadcast_to(rrrs_base_frame_xz, _rrrs),
-            "rrrs_base_frame_yx": np.broadcast_to(rrrs_base_frame_yx, _rrrs),
-            "rrrs_base_frame_yy": np.broadcast_to(rrrs_base_frame_yy, _rrrs),
-            "rrrs_base_frame_yz": np.broadcast_to(rrrs_base_frame_yz, _rrrs),
-            "rrrs_base_frame_zx": np.broadcast_to(rrrs_base_frame_zx, _rrrs),
-            "rrrs_base_frame_zy": np.broadcast_to(rrrs_base_frame_zy, _rrrs),
-            "rrrs_base_frame_zz": np.broadcast_to(rrrs_base_frame_zz, _rrrs),
-            "rrrs_base_point_x": np.broadcast_to(rrrs_base_point_x, _rrrs),
-            "rrrs_base_point_y": np.broadcast_to(rrrs_base_point_y, _rrrs),
-            "rrrs_base_point_z": np.broadcast_to(rrrs_base_point_z, _rrrs),
-            "rrrs_joint2_offset_x": np.broadcast_to(rrrs_joint2_offset_x, _rrrs),
-            "rrrs_joint3_offset_x": np.broadcast_to(rrrs_joint3_offset_x, _rrrs),
-            "rrrs_link1_mass": np.broadcast_to(rrrs_link1_mass, _rrrs),
-            "rrrs_link2_mass": np.broadcast_to(rrrs_link2_mass, _rrrs),
-            "rrrs_link3_mass": np.broadcast_to(rrrs_link3_mass, _rrrs),
-            "rrrs_platform_joint_offset_x": np.broadcast_to(rrrs_platform_joint_offset_x, _rrrs),
-            "rrrs_platform_point_x": np.broadcast_to(rrrs_platform_point_x, _rrrs),
-            "rrrs_platform_point_y": np.broadcast_to(rrrs_platform_point_y, _rrrs),
-            "rrrs_platform_point_z": np.broadcast_to(rrrs_platform_point_z, _rrrs),
-            "size": np.broadcast_to(size, _rrrs),
-            "size_t_3": np.broadcast_to(size_t_3, _rrrs),
-        },
-    }
-    return shared, legs
 
 
-class _Part:
-    """A piece of straight-line code: which prepared values it reads, where its results go."""
-
-    def __init__(self, function, names, passed, targets):
-        self.function, self.names, self.passed, self.targets = function, names, passed, targets
+_FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
 
 
-class _LegPart:
-    """A piece of straight-line code run once per leg of a type."""
-
-    def __init__(self, function, leg, names, leg_names, inputs, passed, sums, targets):
-        self.function, self.leg, self.names, self.leg_names = function, leg, names, leg_names
-        self.inputs, self.passed, self.sums, self.targets = inputs, passed, sums, targets
-
-
-class _Plan:
-    """A computation: before the legs, over the legs of each type, after the legs."""
-
-    def __init__(self, inputs, arrays, before, legs, after=None):
-        self.inputs, self.arrays = inputs, arrays
-        self.before, self.legs, self.after = before, legs, after
-
-    def constants(self, p):
-        """Prepared values in the order of the code: floats per leg, and arrays over legs."""
-        if self not in p._cache:
-            shared, legs = p._prepared()
-            tables = []
-            for part in self.legs:
-                columns = [legs[part.leg][n] for n in part.leg_names]
-                rows = [tuple(row) for row in np.array(columns).T.tolist()]
-                count = len(_LEGS[part.leg])
-                tables.append((tuple(shared[n] for n in part.names), rows or [()] * count,
-                               tuple(c[:, None] for c in columns)))
-            before = tuple(shared[n] for n in self.before.names)
-            after = tuple(shared[n] for n in self.after.names) if self.after else ()
-            p._cache[self] = before, tables, after
-        return p._cache[self]
+def _constants(p, name):
+    """Prepared values of a function: floats, and those of each loop over legs for both modes."""
+    if name not in p._cache:
+        shared, loops = p._prepared()[name]
+        rows, columns = [], []
+        for count, values in loops:
+            table = [np.broadcast_to(v, count) for v in values]
+            rows.append([(leg, tuple(float(v[leg]) for v in table)) for leg in range(count)])
+            columns.append([(slice(0, count), tuple(v[:, None] for v in table))])
+        p._cache[name] = tuple(map(float, shared)), rows, columns
+    return p._cache[name]
 
 
 def _sqrt(x):
@@ -816,117 +878,446 @@ def _sqrt(x):
 
 
 class _Floats:
-    """Functions on Python floats: the way for single states."""
+    """Functions of a state after another, in Python floats: the way for few states."""
 
     sqrt = staticmethod(_sqrt)
     sin = staticmethod(lambda x: float(np.sin(x)))
     cos = staticmethod(lambda x: float(np.cos(x)))
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
     least = staticmethod(lambda x, y: float(np.minimum(x, y)))
+    every = staticmethod(lambda good: good)
+
+    def __init__(self, p, states):
+        self.p, self.states = p, states
+
+    def constants(self, name):
+        """Shared values, and (leg, its values) for every leg of each loop."""
+        return _constants(self.p, name)[:2]
+
+    def zeros(self, size):
+        return [0.0] * size
+
+    def added(self, sums, leg, terms):
+        """Sums over the legs so far."""
+        return [a + b for a, b in zip(sums, terms)]
+
+    def run(self, function, shapes, *vectors):
+        """Arrays (*shape, states) of a function; NaN where the state is impossible."""
+        found = [np.full((self.states, math.prod(shape)), np.nan) for shape in shapes]
+        rows = [v.T.tolist() for v in vectors]
+        for k in range(self.states):
+            try:
+                ok, arrays = function(self, *(row[k] for row in rows))
+            except (ZeroDivisionError, OverflowError):
+                continue
+            if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
+                for a, array in zip(found, arrays):
+                    a[k] = array
+        return [a.T.reshape(*shape, self.states) for a, shape in zip(found, shapes)]
 
 
 class _Arrays:
-    """Functions on arrays over states: the way for batches."""
+    """Functions of many states at once: arrays (states,), and (legs, states)."""
 
     sqrt, sin, cos, atan2, least = np.sqrt, np.sin, np.cos, np.arctan2, np.minimum
 
+    def __init__(self, p, states):
+        self.p, self.states = p, states
 
-_FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
+    def constants(self, name):
+        """Shared values, and (all legs, their values) once for each loop."""
+        shared, _, columns = _constants(self.p, name)
+        return shared, columns
+
+    def zeros(self, size):
+        return np.zeros((size, self.states))
+
+    def every(self, good):
+        """Whether it holds for all legs."""
+        return np.logical_and.reduce(good, axis=0)
+
+    def added(self, sums, legs, terms):
+        """Sums over the legs, all at once."""
+        shape = (legs.stop, self.states)
+        return [np.add.reduce(np.broadcast_to(t, shape), axis=0) for t in terms]
+
+    def run(self, function, shapes, *vectors):
+        """Arrays (*shape, states) of a function; NaN where the state is impossible."""
+        ok, arrays = function(self, *vectors)
+        for a in arrays:
+            ok = ok & np.isfinite(a).all(axis=0)
+        if not np.all(ok):
+            for a in arrays:
+                a[:, ~ok] = np.nan
+        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
 
 
-def _evaluate(plan, p, **vectors):
-    """Arrays of a plan at the vectors that it reads."""
-    p = _given(p)
-    lead = _lead(**vectors)
-    chosen = [np.broadcast_to(vectors[k], lead + vectors[k].shape[-1:]) for k in plan.inputs]
-    return _run(plan, p, *chosen)
+class _Judged(_Arrays):
+    """The same, and why a state is impossible."""
+
+    def __init__(self, p, states):
+        super().__init__(p, states)
+        self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
+
+    def run(self, function, shapes, *vectors):
+        """Arrays (*shape, states) of a function, also where they are nonsense."""
+        (valid, reached, clear), arrays = function(self, *vectors)
+        for code, good in ((3, valid), (1, reached), (2, clear)):
+            self.failed[code] |= ~np.broadcast_to(good, self.states)
+        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+
+    def closed(self, q):
+        """q, noting where the iteration has not converged."""
+        self.failed[4] |= np.isnan(q).any(axis=0)
+        return q
+
+    def status(self, possible):
+        """Status codes; 3 where all is well but some input or result is not finite."""
+        return np.select(list(self.failed.values()), list(self.failed), np.where(possible, 0, 3))
 
 
-def _run(plan, p, *vectors):
-    """Arrays of a plan for one state or many; NaN where the state is impossible."""
-    lead = np.broadcast_shapes(*(v.shape[:-1] for v in vectors))
-    count = int(np.prod(lead, dtype=int))
-    flat = [np.broadcast_to(v, lead + v.shape[-1:]).reshape(count, v.shape[-1]) for v in vectors]
-    outputs = [np.zeros((count, int(np.prod(shape, dtype=int)))) for _, shape in plan.arrays]
-    possible = np.ones(count, dtype=bool)
+def _mode(p, states):
+    """The faster way for so many states."""
+    return _Floats(p, states) if 0 < states <= _FEW else _Arrays(p, states)
+
+
+def _call(function, steps, p, *arguments, mode=_mode):
+    """What the steps give at arguments (name, value, shape of a state, default, rule)."""
+    given = [_argument(function, *a) for a in arguments]
+    shapes = [a[2] for a in arguments]
+    leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
+    lead, p = _lead(leads), _given(p)
+    read = [a[4:] != ("unused",) for a in arguments]
+    if lead or mode is _Judged:
+        results = _many(steps, p, lead, given, shapes, read, mode)
+    else:
+        results = _one(steps, p, given, shapes, read)
+    return results[0] if len(results) == 1 else tuple(results)
+
+
+def _one(steps, p, given, shapes, read):
+    """Results at a single state."""
+    states = [v.reshape(*shape, 1) for v, shape in zip(given, shapes)]
     with np.errstate(all="ignore"):
-        if count <= _FEW:
-            rows = [v.tolist() for v in flat]
-            for i in range(count):
-                possible[i] = _run_one(plan, p, [r[i] for r in rows], [o[i] for o in outputs])
-        else:
-            for i in range(0, count, _BLOCK):
-                block = slice(i, i + _BLOCK)
-                possible[block] = _run_block(
-                    plan, p, [np.ascontiguousarray(v[block].T) for v in flat],
-                    [o[block] for o in outputs])
-        for v in (*flat, *outputs):
-            possible &= np.isfinite(v).all(axis=1)
-    for o in outputs:
-        o[~possible] = np.nan
-    return [o.reshape(lead + shape) for o, (_, shape) in zip(outputs, plan.arrays)]
+        results = [a[..., 0] for a in steps(_Floats(p, 1), *states)]
+    if all(all(map(math.isfinite, v.ravel().tolist())) for v in (*compress(given, read), *results)):
+        return [np.array(a)[()] for a in results]
+    return [np.full(a.shape, np.nan)[()] for a in results]
 
 
-def _run_one(plan, p, vectors, outputs):
-    """One state with Python floats; False if it is impossible."""
-    constants, tables, after = plan.constants(p)
-    try:
-        ok, shared, stores = plan.before.function(constants, *vectors, _Floats)
-        for (array, index), value in zip(plan.before.targets, stores):
-            outputs[array][index] = value
-        sums = []
-        for part, (c, rows, _) in zip(plan.legs, tables):
-            s = [shared[k] for k in part.passed]
-            totals = [0.0] * part.sums
-            for leg, k in enumerate(rows):
-                x = [vectors[plan.inputs.index(v)][index[leg]] for v, index in part.inputs]
-                good, terms, stores = part.function(c, k, x, s, _Floats)
-                ok = ok and good
-                totals = [a + b for a, b in zip(totals, terms)]
-                for (array, index), value in zip(part.targets, stores):
-                    outputs[array][index[leg]] = value
-            sums += totals
-        if plan.after:
-            s = [shared[k] for k in plan.after.passed]
-            good, stores = plan.after.function(after, s, sums, _Floats)
-            ok = ok and good
-            for (array, index), value in zip(plan.after.targets, stores):
-                outputs[array][index] = value
-    except (ZeroDivisionError, OverflowError):
-        return False
-    return ok
+def _many(steps, p, lead, given, shapes, read, mode):
+    """Results at many states, block by block."""
+    count = math.prod(lead)
+    flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
+    possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
+    with np.errstate(all="ignore"):
+        for first in range(0, max(count, 1), _BLOCK):
+            block = slice(first, min(first + _BLOCK, count))
+            states = [_states_last(v[block]) for v in flat]
+            m, good = mode(p, block.stop - first), possible[block]
+            found = steps(m, *states)
+            if not outputs:
+                outputs = [np.empty((count, *a.shape[:-1])) for a in found]
+            _all_finite(compress(states, read), good)
+            if mode is _Judged:
+                m.failed[3] |= ~good
+            _all_finite(found, good)
+            if mode is _Judged:
+                status[block] = m.status(good)
+                good[:] = status[block] == 0
+            for output, a in zip(outputs, found):
+                output[block] = a.transpose(a.ndim - 1, *range(a.ndim - 1))
+    for output in outputs:
+        output[~possible] = np.nan
+    outputs += [status] if mode is _Judged else []
+    return [a.reshape(lead + a.shape[1:])[()] for a in outputs]
 
 
-def _run_block(plan, p, vectors, outputs):
-    """Many states at once, arrays (states,) and (legs, states); which are possible."""
-    constants, tables, after = plan.constants(p)
-    ok, shared, stores = plan.before.function(constants, *vectors, _Arrays)
-    for (array, index), value in zip(plan.before.targets, stores):
-        outputs[array][:, index] = value
-    sums = []
-    for part, (c, _, columns) in zip(plan.legs, tables):
-        legs, states = len(_LEGS[part.leg]), outputs[0].shape[0]
-        x = [vectors[plan.inputs.index(v)][list(index)] for v, index in part.inputs]
-        s = [shared[k] for k in part.passed]
-        good, terms, stores = part.function(c, columns, x, s, _Arrays)
-        ok = ok & np.all(good, axis=0)
-        sums += [np.sum(np.broadcast_to(t, (legs, states)), axis=0) for t in terms]
-        for (array, index), value in zip(part.targets, stores):
-            outputs[array][:, list(index)] = np.broadcast_to(value, (legs, states)).T
-    if plan.after:
-        good, stores = plan.after.function(after, [shared[k] for k in plan.after.passed], sums, _Arrays)
-        ok = ok & good
-        for (array, index), value in zip(plan.after.targets, stores):
-            outputs[array][:, index] = value
-    return ok
+def _states_last(a):
+    """A contiguous array (*shape, states) of one (states, *shape)."""
+    return np.ascontiguousarray(a.transpose(*range(1, a.ndim), 0))
+
+
+def _all_finite(arrays, good):
+    """Clear the flags of states in which some entry is not finite."""
+    for a in arrays:
+        good &= np.isfinite(a).all(axis=tuple(range(a.ndim - 1)))
+
+
+def _with_forces(a, amounts, directions, legs):
+    """a, to whose row of a leg its directions times amounts are added."""
+    result = np.array(a)
+    for k, leg in enumerate(legs):
+        result[leg] += amounts[k] * directions[k]
+    return result
+
+
+def _wrapped(a, places):
+    """a, some entries turned into (-pi, pi]."""
+    result = np.array(a)
+    result[places] = np.pi - np.remainder(np.pi - a[places], 2.0 * np.pi)
+    return result
+
+
+def _rows_divided(a, b, places):
+    """a, some rows divided by b."""
+    result = np.array(a)
+    result[places] /= b
+    return result
+
+
+def _chosen_length(a, b):
+    """b where it is positive; else the first of a, or where that is nothing the second."""
+    return np.where(b > 0.0, b, np.where(a[0] > 1e-09 * a[1], a[0], a[1]))
+
+
+def _scaled(q):
+    """Quaternions with largest entry 1, so that squares of tiny ones keep their digits."""
+    size = np.max(np.abs(q), axis=0)
+    return q / np.where(np.isfinite(np.sum(q * q, axis=0)), size, np.nan)
+
+
+def _unit(q):
+    """Quaternions of length 1."""
+    q = _scaled(q)
+    return q / np.sqrt(np.sum(q * q, axis=0))
+
+
+def _rotation_of_quaternion(q):
+    """Rotation matrices (3, 3, states)."""
+    x, y, z, w = _scaled(q)
+    xx, yy, zz, ww = x * x, y * y, z * z, w * w
+    return np.array((
+        (xx + ww - (yy + zz), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+        (2 * (x * y + w * z), yy + ww - (xx + zz), 2 * (y * z - w * x)),
+        (2 * (x * z - w * y), 2 * (y * z + w * x), zz + ww - (xx + yy)),
+    )) / (xx + yy + zz + ww)
+
+
+def _quaternion_of_rotation(R):
+    """x, y, z, w of rotation matrices."""
+    # each candidate is four times the quaternion times one of its entries; take the longest
+    s = R[2, 1] + R[1, 2], R[0, 2] + R[2, 0], R[1, 0] + R[0, 1]
+    a = R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]
+    x, y, z = R[0, 0], R[1, 1], R[2, 2]
+    candidates = np.array((
+        (1 + x - y - z, s[2], s[1], a[0]),
+        (s[2], 1 - x + y - z, s[0], a[1]),
+        (s[1], s[0], 1 - x - y + z, a[2]),
+        (a[0], a[1], a[2], 1 + x + y + z),
+    ))
+    best = np.argmax(np.sum(candidates * candidates, axis=1), axis=0)
+    return _unit(candidates[best, :, np.arange(len(best))].T)
+
+
+def _quaternion_of_rpy(a):
+    """x, y, z, w of roll, pitch, yaw about the fixed axes x, y, z."""
+    (cx, cy, cz), (sx, sy, sz) = np.cos(0.5 * a), np.sin(0.5 * a)
+    return np.array((
+        sx * cy * cz - cx * sy * sz, cx * sy * cz + sx * cy * sz,
+        cx * cy * sz - sx * sy * cz, cx * cy * cz + sx * sy * sz,
+    ))
+
+
+def _quaternion_rate(q, w):
+    """Rate of a quaternion at an angular velocity."""
+    vector = 0.5 * (q[3] * w + np.cross(w, q[:3], axis=0))
+    return np.concatenate((vector, -0.5 * np.sum(w * q[:3], axis=0)[None]))
+
+
+def _turned(q, b):
+    """Quaternions turned by rotation vectors b."""
+    angle, q = np.sqrt(np.sum(b * b, axis=0)), _unit(q)
+    v, c = b * (0.5 * np.sinc(angle / (2.0 * np.pi))), np.cos(0.5 * angle)
+    vector = c * q[:3] + q[3] * v + np.cross(v, q[:3], axis=0)
+    return np.concatenate((vector, (c * q[3] - np.sum(v * q[:3], axis=0))[None]))
+
+
+def _moved(X, step):
+    """X moved by small displacements."""
+    if _Q is None:
+        return X + step
+    q = _turned(X[_Q : _Q + 4], step[_Q : _Q + 3])
+    return np.concatenate((X[:_Q] + step[:_Q], q, X[_Q + 4 :] + step[_Q + 3 :]))
+
+
+_PIVOT = 1.8e-12  # a pivot below this fraction of its row counts as zero (epsilon^(3/4))
+_CLEARLY = 2.0  # rows change places only for a pivot that is larger by this factor
+
+
+def _solve(a, b):
+    """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
+    n, states = b.shape
+    if 0 < states <= _FEW:
+        matrices, rights = np.moveaxis(a, -1, 0).tolist(), b.T.tolist()
+        return np.array([_solve_one(*each) for each in zip(matrices, rights)]).T.reshape(n, states)
+    size = np.max(np.abs(a), axis=1, initial=0.0)
+    good = np.all((size > 0.0) & np.isfinite(size), axis=0)
+    rows = np.concatenate((a, b[:, None]), axis=1)
+    rows /= size[:, None]
+    for k in range(n):
+        column = np.abs(rows[k:, k])
+        best = np.argmax(column, axis=0)
+        at = np.flatnonzero(best)
+        at = at[column[best[at], at] > _CLEARLY * column[0, at]]
+        if at.size:
+            other = k + best[at]
+            upper, lower = rows[k, k:, at], rows[other, k:, at]
+            rows[k, k:, at], rows[other, k:, at] = lower, upper
+        pivot = rows[k, k]
+        good &= np.abs(pivot) > _PIVOT
+        factor = rows[k + 1 :, k] / pivot
+        rows[k + 1 :, k + 1 :] -= factor[:, None] * rows[k, k + 1 :]
+    x = np.empty((n, states))
+    for k in reversed(range(n)):
+        known = np.einsum("js,js->s", rows[k, k + 1 : n], x[k + 1 :])
+        x[k] = (rows[k, n] - known) / rows[k, k]
+    x[:, ~(good & np.isfinite(x).all(axis=0))] = np.nan
+    return x
+
+
+def _solve_one(a, b):
+    """The same for one system of nested lists."""
+    n = len(b)
+    failure = [np.nan] * n
+    for i, row in enumerate(a):
+        size = max(map(abs, row), default=0.0)
+        if not 0.0 < size < np.inf:
+            return failure
+        a[i] = [v / size for v in row] + [b[i] / size]
+    for k in range(n):
+        best = max(range(k, n), key=lambda i: abs(a[i][k]))
+        if abs(a[best][k]) > _CLEARLY * abs(a[k][k]):
+            a[k], a[best] = a[best], a[k]
+        if not abs(a[k][k]) > _PIVOT:
+            return failure
+        head = a[k]
+        for i in range(k + 1, n):
+            factor = a[i][k] / head[k]
+            a[i] = [v - factor * h for v, h in zip(a[i], head)]
+    x = [0.0] * n
+    for k in reversed(range(n)):
+        x[k] = (a[k][n] - sum(a[k][j] * x[j] for j in range(k + 1, n))) / a[k][k]
+    return x if all(map(math.isfinite, x)) else failure
+
+
+def _matrices(a, *others):
+    """Matrices with the states first, zero where something is not finite; and where that is."""
+    bad = ~np.isfinite(a).all(axis=(0, 1))
+    for b in others:
+        bad |= ~np.isfinite(b).all(axis=0)
+    a = np.moveaxis(a, -1, 0)
+    return (np.where(bad[:, None, None], 0.0, a) if bad.any() else a), bad
+
+
+def _null_basis(a, rank):
+    """Orthonormal columns x with a x = 0, for a of so high a rank."""
+    a, bad = _matrices(a)
+    _, _, vt = np.linalg.svd(a)
+    basis = vt[:, rank:].transpose(2, 1, 0).copy()
+    basis[..., bad] = np.nan
+    return basis
+
+
+def _singular_values(a):
+    """Singular values, in descending order."""
+    a, bad = _matrices(a)
+    values = np.linalg.svd(a, compute_uv=False).T.copy()
+    values[:, bad] = np.nan
+    return values
+
+
+def _least_squares(a, b, least):
+    """x of least norm with the least a x - b; singular values below a fraction count as zero."""
+    a, bad = _matrices(a, b)
+    x = (np.linalg.pinv(a, rcond=least) @ b.T[..., None])[..., 0].T
+    x[:, bad] = np.nan
+    return x
+
+
+def _search(m, residual, slope, X, given, guess, halving):
+    """The pose at which residual(mode, X, *given) vanishes, by Gauss-Newton from X.
+
+    slope(mode, X, *guess) is its derivative, transposed, negative.  Steps are halved until the
+    residual is smaller, or taken as they are.  NaN where no pose is found.
+    """
+    X = np.array(X)
+    gap = np.array(_at(m, residual, X, given, slice(None)))
+    size = np.max(np.abs(gap), axis=0, initial=0.0)
+    open_ = np.isfinite(size) & np.isfinite(X).all(axis=0)
+    size[~open_] = np.inf
+    for _ in range(50):
+        at = np.flatnonzero(open_ & (size >= 1e-14))
+        if not at.size:
+            break
+        a = _at(m, slope, X, guess, at)
+        step = _least_squares(np.swapaxes(a, 0, 1), gap[:, at], 1e-10)
+        stopped = ~np.isfinite(step).all(axis=0)
+        size[at[stopped]] = np.inf
+        open_[at[stopped]] = False
+        at, step = at[~stopped], step[:, ~stopped]
+        for _ in range(12 if halving else 1):
+            trial = np.array(X)
+            trial[:, at] = _moved(X[:, at], step)
+            trial_gap = _at(m, residual, trial, given, at)
+            trial_size = np.max(np.abs(trial_gap), axis=0, initial=0.0)
+            good = trial_size < size[at] if halving else np.ones(at.size, dtype=bool)
+            taken = at[good]
+            X[:, taken], gap[:, taken], size[taken] = trial[:, taken], trial_gap[:, good], trial_size[good]
+            if not halving:
+                lost = ~np.isfinite(size[taken])
+                size[taken[lost]] = np.inf
+                open_[taken[lost | (np.max(np.abs(step), axis=0) < 0.1 * 1e-14)]] = False
+            at, step = at[~good], 0.5 * step[:, ~good]
+            if not at.size:
+                break
+        open_[at] = False
+    X[:, ~(size < 1e-09)] = np.nan
+    return X
+
+
+def _at(m, function, X, given, at):
+    """The array of a function at some of the states."""
+    X, given = X[:, at], [v[..., at] for v in given]
+    (found,) = function(_mode(m.p, X.shape[1]), X, *given)
+    return found
+
+
+def _rotations(R, n, nearest):
+    """Rotation matrices (..., n, n): R as it is, or the nearest; those with NaN stay."""
+    R = np.array(_numbers("pose", "R", R))
+    if R.shape[-2:] != (n, n):
+        raise ValueError(f"pose: R has shape {R.shape}, expected (..., {n}, {n})")
+    known = np.isfinite(R).all(axis=(-1, -2))
+    if nearest:
+        R[known] = _nearest(R[known])
+    if not np.all(_are_rotations(R[known])):
+        raise ValueError(
+            "pose: R is no rotation matrix, with orthonormal rows to 1e-06 and determinant +1;"
+            " nearest=True takes the nearest one")
+    return R
+
+
+def _nearest(R):
+    """The nearest rotations (k, n, n); ValueError where several are."""
+    largest = np.max(np.abs(R), axis=(1, 2), keepdims=True)
+    u, s, vt = np.linalg.svd(R / np.where(largest > 0.0, largest, 1.0))
+    sign = np.sign(np.linalg.det(u @ vt))
+    if np.any(s[:, -2] + sign * s[:, -1] <= 1e-06 * s[:, 0]):
+        raise ValueError("pose: R has no single nearest rotation")
+    u[:, :, -1] *= sign[:, None]
+    return u @ vt
 
 
 # dynamics: 1350 mul, 1014 add, 12 div, 6 sqrt, 0 trig
-def _dynamics_before(c, X, V, f):
+def _run_dynamics(m, X, V):
+    sqrt = m.sqrt
+    shared, legs = m.constants("dynamics")
     (
     J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
         Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
-    ) = c
+        m_star,
+    ) = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -974,6 +1365,11 @@ def _dynamics_before(c, X, V, f):
     omega_x = V_3
     omega_y = V_4
     omega_z = V_5
+    ok = True
+    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    out_M = m.zeros(36)
+    out_Z = m.zeros(6)
+    out_H = m.zeros(36)
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -1017,449 +1413,445 @@ def _dynamics_before(c, X, V, f):
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
-    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    return (
-    ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
-        t_dot_z, omega_x, omega_y, omega_z, h_star_in_base_x, h_star_in_base_y, h_star_in_base_z,
-        J_star_t_8, J_star_t_9, J_star_t_10, J_star_t_12, J_star_t_13, J_star_t_15, Z_p_x, Z_p_y,
-        Z_p_z, Z_q_in_base_x, Z_q_in_base_y, Z_q_in_base_z,), (),
-    )
-
-
-def _dynamics_rrrs(c, k, x, s, f):
-    sqrt = f.sqrt
-    (
-    J_1_xx, J_2_xx, J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz,
-        J_3_zz, Jc_2_zz, Kd_2_t, Kd_2_t_2, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, Sigma_3_xx,
-        Sigma_3_yy, Sigma_3_zz, branch_1, branch_2, d_Gamma_2_t, d_Gamma_2_y, d_c_yy, d_phi_3_t,
-        g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
-        inv_rrrs_platform_joint_offset_x, inv_size_t, inv_size_t_2, rho2_2_t, rrrs_base_frame_xx,
-        rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-        rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
-        rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x,
-        rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-        rrrs_platform_point_y, rrrs_platform_point_z, size, size_t_3,
-    ) = k
-    (
-    t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
-        t_dot_z, omega_x, omega_y, omega_z,
-    ) = s
-    # (rrrs-K1) from the base point to the connection point
-    q_in_base_x = (
-    R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
-    )
-    q_in_base_y = (
-    R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
-    )
-    q_in_base_z = (
-    R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
-    )
-    S_x = q_in_base_x + t_x - rrrs_base_point_x
-    S_y = q_in_base_y + t_y - rrrs_base_point_y
-    S_z = q_in_base_z + t_z - rrrs_base_point_z
-    # (rrrs-K2) component along the reference direction
-    px_1 = S_x*rrrs_base_frame_xy + S_y*rrrs_base_frame_yy + S_z*rrrs_base_frame_zy
-    # (rrrs-K3) component across the reference direction
-    py_1 = S_x*rrrs_base_frame_xz + S_y*rrrs_base_frame_yz + S_z*rrrs_base_frame_zz
-    # (rrrs-K5) squared amplitude
-    rho2_1 = px_1*px_1 + py_1*py_1
-    # (rrrs-K7) root, with the sign of the branch
-    root_1 = branch_1*sqrt(rho2_1)
-    # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
-    xi_1_t = S_x*rrrs_base_frame_xx + S_y*rrrs_base_frame_yx + S_z*rrrs_base_frame_zx
-    # (rrrs-K12) from the origin of joint 2 to the connection point
-    x_2_z = xi_1_t - rrrs_joint2_offset_x
-    # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-    Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
-    Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
-    # (rrrs-K17) factor of the cosine in the equation of joint 2
-    Kc_2 = root_1*rrrs_joint3_offset_x
-    # (rrrs-K18) factor of the sine in the equation of joint 2
-    Ks_2 = rrrs_joint3_offset_x*x_2_z
-    # (rrrs-K19) squared amplitude
-    rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
-    # (rrrs-K20) discriminant
-    disc_2 = rho2_2 - Kd_2*Kd_2
-    # (rrrs-K21) root, with the sign of the branch
-    root_2 = branch_2*sqrt(disc_2)
-    # (rrrs-K27) from the origin of joint 3 to the connection point
-    x_3_x = Kd_2*inv_size_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
-    # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-    c_3 = inv_size_t_2*rrrs_platform_joint_offset_x*x_3_x
-    # (rrrs-K30) sine of the angle of joint 3 from its reference direction
-    s_3 = inv_size_t*inv_size_t_2*root_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
-    # (rrrs-V2) from joint 2 to the connection point, along the links
-    r_2_t = rrrs_platform_joint_offset_x*s_3
-    r_2_x = rrrs_joint3_offset_x + c_3*rrrs_platform_joint_offset_x
-    # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
-    inv_rho2_2 = 1.0/rho2_2
-    c_2 = inv_rho2_2*(Kc_2*Kd_2 + Ks_2*root_2)
-    # (rrrs-K23) sine of the angle of joint 2 from its reference direction
-    s_2 = inv_rho2_2*(Kc_2*root_2 - Kd_2*Ks_2)
-    # (rrrs-V4) velocity of the connection point per rate of joint 1
-    e_1_r2_x = c_2*s_3 - c_3*s_2
-    e_1_r2_y = -c_2*c_3 - s_2*s_3
-    # (rrrs-V3) from joint 1 to the connection point, along the links
-    r_1_r1_x = c_2*root_1 - s_2*xi_1_t
-    r_1_r1_y = -c_2*xi_1_t - root_1*s_2
-    # (rrrs-V4) velocity of the connection point per rate of joint 1
-    v_1_z = e_1_r2_x*(c_3*r_1_r1_y + r_1_r1_x*s_3) - e_1_r2_y*(c_3*r_1_r1_x - r_1_r1_y*s_3)
-    # (rrrs-V2) from joint 2 to the connection point, along the links
-    r_2_r0_x = c_3*r_2_x + r_2_t*s_3
-    r_2_r0_y = r_2_x*s_3 - c_3*r_2_t
-    # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
-    inv_rho2_1 = 1.0/rho2_1
-    c_1 = inv_rho2_1*py_1*root_1
-    # (rrrs-K9) sine of the angle of joint 1 from its reference direction
-    s_1 = inv_rho2_1*px_1*root_1
-    # (rrrs-V7) reciprocal vector 1
-    axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*s_1 - c_1*rrrs_base_frame_xy
-    axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*s_1 - c_1*rrrs_base_frame_yy
-    axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*s_1 - c_1*rrrs_base_frame_zy
-    w_1_t = e_1_r2_x*s_1
-    w_1_t_2 = c_1*e_1_r2_x
-    axis_y_rrrs_axes3_in_base_x = (
-    e_1_r2_y*rrrs_base_frame_xx + rrrs_base_frame_xy*w_1_t + rrrs_base_frame_xz*w_1_t_2
-    )
-    axis_y_rrrs_axes3_in_base_y = (
-    e_1_r2_y*rrrs_base_frame_yx + rrrs_base_frame_yy*w_1_t + rrrs_base_frame_yz*w_1_t_2
-    )
-    axis_y_rrrs_axes3_in_base_z = (
-    e_1_r2_y*rrrs_base_frame_zx + rrrs_base_frame_zy*w_1_t + rrrs_base_frame_zz*w_1_t_2
-    )
-    axis_x_rrrs_axes3_x = (
-    axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
-        axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y
-    )
-    axis_x_rrrs_axes3_y = (
-    axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
-        axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z
-    )
-    axis_x_rrrs_axes3_z = (
-    axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
-        axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
-    )
-    # (rrrs-G9) inertia tensor of link 3 about the connection point
-    J_3_t = J_3_xy*s_3
-    _x = J_3_t + J_3_xx*c_3
-    J_3_t_2 = J_3_xy*c_3
-    _x_2 = J_3_t_2 + J_3_yy*s_3
-    _x_3 = J_3_xz*c_3 + J_3_yz*s_3
-    _y = J_3_yz*c_3 - J_3_xz*s_3
-    # (rrrs-N18) inertia tensor of the links from 2 outwards about joint 2
-    Jc_2_xy = J_2_xy + _x_2*c_3 - _x*s_3
-    _y_2 = (
-    -c_2*(-Jc_2_xy*s_2 - c_2*(J_2_yy + c_3*(J_3_yy*c_3 - J_3_t) - s_3*(J_3_t_2 - J_3_xx*s_3))) -
-        s_2*(-Jc_2_xy*c_2 - s_2*(J_2_xx + _x*c_3 + _x_2*s_3))
-    )
-    # (rrrs-V7) reciprocal vector 1
-    inv_v_1_z = 1.0/v_1_z
-    # (rrrs-V8) reciprocal vector 2
-    inv_r_2_r0_y = 1.0/r_2_r0_y
-    # (rrrs-V9) reciprocal vector 3
-    w_3_t = inv_r_2_r0_y*inv_rrrs_platform_joint_offset_x*r_2_r0_x
-    # (rrrs-N50) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-    d_Gamma_1_z = e_1_r2_x*h_3_y + inv_v_1_z*(J_1_xx + _y_2) - e_1_r2_y*h_3_x
-    # (rrrs-N41) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-    d_Gamma_2_t_2 = d_Gamma_2_t*r_2_r0_x
-    d_Gamma_2_x = -h_3_y - inv_r_2_r0_y*(Jc_2_zz - d_Gamma_2_t_2)
-    # (rrrs-N32) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-    d_Gamma_3_t = inv_v_1_z*(-_x_3*s_2 - _y*c_2)
-    d_Gamma_3_x = -h_3_y - inv_r_2_r0_y*(J_3_zz - d_Gamma_2_t_2)
-    # (rrrs-A25) coefficient of the acceleration in: angular acceleration of link 3
-    d_alpha_3_t = e_1_r2_x*inv_v_1_z
-    d_alpha_3_t_2 = e_1_r2_y*inv_v_1_z
-    # (rrrs-N56) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_xx = d_Gamma_2_x*inv_r_2_r0_y + h_3_y*(w_3_t - inv_r_2_r0_y) - d_Gamma_3_x*w_3_t
-    d_c_xy = d_phi_3_t + d_Gamma_2_y*inv_r_2_r0_y - d_Gamma_2_y*w_3_t
-    d_c_xz = (
-    inv_r_2_r0_y*inv_v_1_z*(-c_2*(J_2_yz + _y) - s_2*(J_2_xz + _x_3)) - d_Gamma_3_t*w_3_t -
-        d_alpha_3_t_2*h_3_z
-    )
-    d_c_yz = d_alpha_3_t*h_3_z - d_Gamma_3_t*inv_rrrs_platform_joint_offset_x
-    # (rrrs-N58) inertia of the leg at the connection point, without the mass gathered there
-    Q_t = d_c_xx - d_c_yy
-    Q_t_2 = 0.5*Q_t
-    Q_t_3 = d_c_xx + d_Gamma_1_z*inv_v_1_z + d_alpha_3_t*h_3_y - d_alpha_3_t_2*h_3_x
-    Q_t_4 = 0.5*Q_t_3
-    Q_t_5 = (
-    axis_x_rrrs_axes3_x*d_c_xy + axis_z_rrrs_axes3_in_base_x*d_c_yz -
-        Q_t_2*axis_y_rrrs_axes3_in_base_x
-    )
-    Q_t_6 = (
-    axis_x_rrrs_axes3_y*d_c_xy + axis_z_rrrs_axes3_in_base_y*d_c_yz -
-        Q_t_2*axis_y_rrrs_axes3_in_base_y
-    )
-    Q_t_7 = (
-    axis_x_rrrs_axes3_z*d_c_xy + axis_z_rrrs_axes3_in_base_z*d_c_yz -
-        Q_t_2*axis_y_rrrs_axes3_in_base_z
-    )
-    Q_t_8 = Q_t_4*axis_z_rrrs_axes3_in_base_x - axis_x_rrrs_axes3_x*d_c_xz
-    Q_t_9 = Q_t_4*axis_z_rrrs_axes3_in_base_y - axis_x_rrrs_axes3_y*d_c_xz
-    Q_t_10 = Q_t_4*axis_z_rrrs_axes3_in_base_z - axis_x_rrrs_axes3_z*d_c_xz
-    Q_t_11 = Q_t_5*axis_y_rrrs_axes3_in_base_x - Q_t_8*axis_z_rrrs_axes3_in_base_x
-    Q_t_12 = 2.0*Q_t_11 + d_c_xx
-    Q_t_13 = (
-    Q_t_5*axis_y_rrrs_axes3_in_base_y + Q_t_6*axis_y_rrrs_axes3_in_base_x -
-        Q_t_8*axis_z_rrrs_axes3_in_base_y - Q_t_9*axis_z_rrrs_axes3_in_base_x
-    )
-    Q_t_14 = (
-    Q_t_5*axis_y_rrrs_axes3_in_base_z + Q_t_7*axis_y_rrrs_axes3_in_base_x -
-        Q_t_10*axis_z_rrrs_axes3_in_base_x - Q_t_8*axis_z_rrrs_axes3_in_base_z
-    )
-    Q_t_15 = Q_t_6*axis_y_rrrs_axes3_in_base_y - Q_t_9*axis_z_rrrs_axes3_in_base_y
-    Q_t_16 = 2.0*Q_t_15 + d_c_xx
-    Q_t_17 = (
-    Q_t_6*axis_y_rrrs_axes3_in_base_z + Q_t_7*axis_y_rrrs_axes3_in_base_y -
-        Q_t_10*axis_z_rrrs_axes3_in_base_y - Q_t_9*axis_z_rrrs_axes3_in_base_z
-    )
-    Q_t_18 = Q_t_7*axis_y_rrrs_axes3_in_base_z - Q_t_10*axis_z_rrrs_axes3_in_base_z
-    Q_t_19 = 2.0*Q_t_18 + d_c_xx
-    # (M2) coupling block of M
-    M_ta_t = Q_t_13*q_in_base_z
-    M_ta_t_2 = Q_t_14*q_in_base_y
-    M_ta_t_3 = M_ta_t - M_ta_t_2
-    M_ta_t_4 = Q_t_12*q_in_base_z - Q_t_14*q_in_base_x
-    M_ta_t_5 = Q_t_12*q_in_base_y - Q_t_13*q_in_base_x
-    M_ta_t_6 = Q_t_16*q_in_base_z - Q_t_17*q_in_base_y
-    M_ta_t_7 = Q_t_17*q_in_base_x
-    M_ta_t_8 = M_ta_t - M_ta_t_7
-    M_ta_t_9 = Q_t_13*q_in_base_y - Q_t_16*q_in_base_x
-    M_ta_t_10 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y
-    M_ta_t_11 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x
-    M_ta_t_12 = M_ta_t_7 - M_ta_t_2
-    # (M3) rotational block of M
-    M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y
-    M_aa_t_2 = M_ta_t_8*q_in_base_z - M_ta_t_11*q_in_base_y
-    M_aa_t_3 = M_ta_t_12*q_in_base_y + M_ta_t_9*q_in_base_z
-    M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x
-    M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z
-    M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x
-    # (rrrs-V1) velocity of the connection point
-    S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-    S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-    S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-    S_dot_x = S_dot_t + t_dot_x
-    S_dot_y = S_dot_t_2 + t_dot_y
-    S_dot_z = S_dot_t_3 + t_dot_z
-    # (rrrs-V10) rate of joint 1
-    qd_2 = (
-    inv_r_2_r0_y*(S_dot_x*axis_x_rrrs_axes3_x + S_dot_y*axis_x_rrrs_axes3_y +
-        S_dot_z*axis_x_rrrs_axes3_z)
-    )
-    qd_3 = (
-    inv_rrrs_platform_joint_offset_x*(S_dot_x*axis_y_rrrs_axes3_in_base_x +
-        S_dot_y*axis_y_rrrs_axes3_in_base_y + S_dot_z*axis_y_rrrs_axes3_in_base_z + qd_2*r_2_r0_x)
-    )
-    qd_1 = (
-    inv_v_1_z*(S_dot_x*axis_z_rrrs_axes3_in_base_x + S_dot_y*axis_z_rrrs_axes3_in_base_y +
-        S_dot_z*axis_z_rrrs_axes3_in_base_z)
-    )
-    # (rrrs-V13) angular velocity of link 1
-    omega_1_t = qd_1*s_2
-    omega_1_t_2 = c_2*qd_1
-    # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_x = omega_1_t_2*qd_2
-    zeta_2_y = omega_1_t*qd_2
-    # (rrrs-V15) angular velocity of link 2
-    omega_2_r0_x = omega_1_t_2*s_3 - c_3*omega_1_t
-    omega_2_r0_y = -c_3*omega_1_t_2 - omega_1_t*s_3
-    # (rrrs-A5) angular acceleration of link 3 from the turning of axis 3
-    zeta_3_y = omega_2_r0_x*qd_3
-    # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_r0_y = s_3*zeta_2_x - c_3*zeta_2_y
-    # (rrrs-A6) angular acceleration of link 3 at zero joint accelerations
-    beta_3_y = zeta_2_r0_y - zeta_3_y
-    # (rrrs-V17) angular velocity of link 3
-    omega_3_z = qd_3 - qd_2
-    # (rrrs-V16) centripetal tensor of link 2
-    W_2_t = omega_1_t*omega_1_t
-    W_2_t_2 = omega_1_t_2*omega_1_t_2
-    W_2_t_3 = qd_2*qd_2
-    W_2_xy = omega_1_t*omega_1_t_2
-    # (rrrs-V18) centripetal tensor of link 3
-    W_3_t = omega_2_r0_x*omega_2_r0_x
-    W_3_t_2 = omega_2_r0_y*omega_2_r0_y
-    W_3_t_3 = omega_3_z*omega_3_z
-    W_3_xy = omega_2_r0_x*omega_2_r0_y
-    W_3_xz = omega_2_r0_x*omega_3_z
-    W_3_yz = omega_2_r0_y*omega_3_z
-    # (rrrs-A7) acceleration of the connection point at zero joint accelerations
-    bias_t = rrrs_joint2_offset_x*s_2
-    bias_t_2 = c_2*rrrs_joint2_offset_x
-    bias_t_3 = (
-    omega_2_r0_x*(-bias_t*s_3 - bias_t_2*c_3) - omega_2_r0_y*(bias_t_2*s_3 - bias_t*c_3)
-    )
-    bias_t_4 = c_3*rrrs_joint3_offset_x
-    bias_t_5 = rrrs_joint3_offset_x*s_3
-    bias_t_6 = bias_t_5*qd_2
-    bias_t_7 = bias_t_4*qd_2
-    bias_t_8 = bias_t_5*omega_2_r0_x - bias_t_4*omega_2_r0_y
-    bias_t_9 = omega_3_z*rrrs_platform_joint_offset_x
-    bias_t_10 = omega_2_r0_y*rrrs_platform_joint_offset_x
-    bias_x = (
-    bias_t_3*omega_2_r0_y + bias_t_8*omega_2_r0_y - bias_t_10*omega_2_r0_y - bias_t_7*qd_2 -
-        bias_t_9*omega_3_z
-    )
-    bias_y = (
-    bias_t_10*omega_2_r0_x - bias_t_3*omega_2_r0_x - bias_t_6*qd_2 - bias_t_8*omega_2_r0_x
-    )
-    bias_z = (
-    bias_t_5*(c_3*zeta_2_x + s_3*zeta_2_y) + bias_t_9*omega_2_r0_x -
-        beta_3_y*rrrs_platform_joint_offset_x - bias_t_4*zeta_2_r0_y - bias_t_6*omega_2_r0_y -
-        bias_t_7*omega_2_r0_x
-    )
-    # (rrrs-A1) centripetal acceleration of the connection point
-    u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z
-    u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x
-    u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y
-    u_1_tip_x = axis_x_rrrs_axes3_x*u_1_x + axis_x_rrrs_axes3_y*u_1_y + axis_x_rrrs_axes3_z*u_1_z
-    u_1_tip_y = (
-    axis_y_rrrs_axes3_in_base_x*u_1_x + axis_y_rrrs_axes3_in_base_y*u_1_y +
-        axis_y_rrrs_axes3_in_base_z*u_1_z
-    )
-    u_1_tip_z = (
-    axis_z_rrrs_axes3_in_base_x*u_1_x + axis_z_rrrs_axes3_in_base_y*u_1_y +
-        axis_z_rrrs_axes3_in_base_z*u_1_z
-    )
-    # (rrrs-A9) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-    rel_o_x = u_1_tip_x - bias_x
-    rel_o_y = u_1_tip_y - bias_y
-    rel_o_z = u_1_tip_z - bias_z
-    # (rrrs-A11) remainder without the acceleration in: acceleration of joint 1
-    qdd_2_o = inv_r_2_r0_y*rel_o_x
-    qdd_1_o = inv_v_1_z*rel_o_z
-    # (rrrs-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-    g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
-    g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
-    g_r3_x = -c_2*g_r1_y - g_r0_z*s_2
-    g_r3_y = g_r1_y*s_2 - c_2*g_r0_z
-    # (rrrs-A17) remainder without the acceleration in: angular acceleration of link 1
-    alpha_1_o_t = qdd_1_o*s_2
-    alpha_1_o_t_2 = c_2*qdd_1_o
-    # (rrrs-A21) remainder without the acceleration in: angular acceleration of link 2
-    alpha_2_o_x = zeta_2_x - alpha_1_o_t
-    alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y
-    # (rrrs-A23) remainder of the acceleration tensor of link 2
-    B_2_o_xy = W_2_xy + qdd_2_o
-    B_2_o_yx = W_2_xy - qdd_2_o
-    B_2_o_zx = zeta_2_y - alpha_2_o_y
-    B_2_o_zy = alpha_2_o_x + zeta_2_x
-    # (rrrs-N37) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-    mu_2_o_x = (
-    B_2_o_yx*J_2_xz + B_2_o_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) + g_r3_y*h_2_z -
-        B_2_o_zx*J_2_xy - Sigma_2_zz*alpha_1_o_t - g_r1_x*h_2_y
-    )
-    mu_2_o_y = (
-    B_2_o_zy*J_2_xy + g_r1_x*h_2_x - B_2_o_xy*J_2_yz - B_2_o_zx*Sigma_2_xx - J_2_xz*(W_2_t -
-        W_2_t_3) - Sigma_2_zz*alpha_1_o_t_2 - g_r3_x*h_2_z
-    )
-    mu_2_o_z = (
-    B_2_o_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + g_r3_x*h_2_y - B_2_o_xy*Sigma_2_yy -
-        J_2_xz*alpha_1_o_t - J_2_yz*alpha_1_o_t_2 - g_r3_y*h_2_x
-    )
-    # (rrrs-N10) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-    acc_3_o_x = u_1_tip_x + g_r3_y*s_3 - c_3*g_r3_x
-    acc_3_o_y = u_1_tip_y - c_3*g_r3_y - g_r3_x*s_3
-    acc_3_o_z = u_1_tip_z - g_r1_x
-    # (rrrs-A26) remainder without the acceleration in: angular acceleration of link 3
-    alpha_3_o_x = alpha_2_o_x*c_3 + omega_2_r0_y*qd_3 - alpha_2_o_y*s_3
-    alpha_3_o_y = alpha_2_o_x*s_3 + alpha_2_o_y*c_3 - zeta_3_y
-    alpha_3_o_z = inv_rrrs_platform_joint_offset_x*(rel_o_y + qdd_2_o*r_2_r0_x) - qdd_2_o
-    # (rrrs-A28) remainder of the acceleration tensor of link 3
-    B_3_o_xy = W_3_xy - alpha_3_o_z
-    B_3_o_xz = W_3_xz + alpha_3_o_y
-    B_3_o_yx = W_3_xy + alpha_3_o_z
-    B_3_o_yz = W_3_yz - alpha_3_o_x
-    B_3_o_zx = W_3_xz - alpha_3_o_y
-    B_3_o_zy = W_3_yz + alpha_3_o_x
-    # (rrrs-N30) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-    mu_3_o_x = (
-    B_3_o_yx*J_3_xz + B_3_o_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) + acc_3_o_z*h_3_y -
-        B_3_o_yz*Sigma_3_zz - B_3_o_zx*J_3_xy - acc_3_o_y*h_3_z
-    )
-    mu_3_o_y = (
-    B_3_o_xz*Sigma_3_zz + B_3_o_zy*J_3_xy + acc_3_o_x*h_3_z - B_3_o_xy*J_3_yz -
-        B_3_o_zx*Sigma_3_xx - J_3_xz*(W_3_t - W_3_t_3) - acc_3_o_z*h_3_x
-    )
-    mu_3_o_z = (
-    B_3_o_xz*J_3_yz + B_3_o_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + acc_3_o_y*h_3_x -
-        B_3_o_xy*Sigma_3_yy - B_3_o_yz*J_3_xz - acc_3_o_x*h_3_y
-    )
-    # (rrrs-N39) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-    N_2_o_x = mu_2_o_x + c_3*mu_3_o_x + mu_3_o_y*s_3
-    N_2_o_y = mu_2_o_y + c_3*mu_3_o_y - mu_3_o_x*s_3
-    N_2_o_z = mu_2_o_z + mu_3_o_z
-    # (rrrs-N46) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-    mu_1_o_z = J_1_xx*qdd_1_o - g_r1_x*h_1_y - g_r1_y*h_1_z
-    # (rrrs-N48) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-    N_1_o_z = mu_1_o_z - N_2_o_x*s_2 - N_2_o_y*c_2
-    # (rrrs-N54) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-    G_o_t = inv_rrrs_platform_joint_offset_x*mu_3_o_z
-    # (rrrs-N57) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    c_o_x = (
-    h_3_x*(W_3_t_2 + W_3_t_3) - B_3_o_xy*h_3_y - B_3_o_xz*h_3_z - inv_r_2_r0_y*(G_o_t*r_2_r0_x -
-        N_2_o_z)
-    )
-    c_o_y = h_3_y*(W_3_t + W_3_t_3) - G_o_t - B_3_o_yx*h_3_x - B_3_o_yz*h_3_z
-    c_o_z = h_3_z*(W_3_t + W_3_t_2) - B_3_o_zx*h_3_x - B_3_o_zy*h_3_y - N_1_o_z*inv_v_1_z
-    # (rrrs-N59) velocity and gravity terms of the leg force
-    U_in_base_x = (
-    -axis_x_rrrs_axes3_x*c_o_x - axis_y_rrrs_axes3_in_base_x*c_o_y -
-        axis_z_rrrs_axes3_in_base_x*c_o_z
-    )
-    U_in_base_y = (
-    -axis_x_rrrs_axes3_y*c_o_x - axis_y_rrrs_axes3_in_base_y*c_o_y -
-        axis_z_rrrs_axes3_in_base_y*c_o_z
-    )
-    U_in_base_z = (
-    -axis_x_rrrs_axes3_z*c_o_x - axis_y_rrrs_axes3_in_base_z*c_o_y -
-        axis_z_rrrs_axes3_in_base_z*c_o_z
-    )
-    # (M7) rotational part of Z
-    Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z
-    Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
-    Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
-    # (rrrs-V7) reciprocal vector 1
-    w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_v_1_z
-    w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_v_1_z
-    w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_v_1_z
-    # (M8) moment of the column's unit force about the platform origin
-    H_a_1_x = q_in_base_y*w_1_t_5 - q_in_base_z*w_1_t_4
-    H_a_1_y = q_in_base_z*w_1_t_3 - q_in_base_x*w_1_t_5
-    H_a_1_z = q_in_base_x*w_1_t_4 - q_in_base_y*w_1_t_3
-    # (rrrs-V8) reciprocal vector 2
-    w_2_t = axis_x_rrrs_axes3_x*inv_r_2_r0_y
-    w_2_t_2 = axis_x_rrrs_axes3_y*inv_r_2_r0_y
-    w_2_t_3 = axis_x_rrrs_axes3_z*inv_r_2_r0_y
-    # (M9) moment of the column's unit force about the platform origin
-    H_a_2_x = q_in_base_z*w_2_t_2 - q_in_base_y*w_2_t_3
-    H_a_2_y = q_in_base_x*w_2_t_3 - q_in_base_z*w_2_t
-    H_a_2_z = q_in_base_y*w_2_t - q_in_base_x*w_2_t_2
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * rho2_2_t) & (disc_2 >= 0.0) & (abs(v_1_z) > _TOLERANCE * size) & (abs(-r_2_r0_y) > _TOLERANCE * size)
-    return (
-    ok, (Q_t_12, Q_t_13, Q_t_14, Q_t_16, Q_t_17, Q_t_19, M_ta_t_3, M_ta_t_4, M_ta_t_5, M_ta_t_6,
-        M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2, M_aa_t_3, M_aa_t_4,
-        M_aa_t_5, M_aa_t_6, U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,),
-        (w_1_t_3, w_1_t_4, w_1_t_5, H_a_1_x, H_a_1_y, H_a_1_z, -w_2_t, -w_2_t_2, -w_2_t_3,
-        H_a_2_x, H_a_2_y, H_a_2_z,),
-    )
-
-
-def _dynamics_after(c, s, t, f):
-    m_star, = c
-    (
-    h_star_in_base_x, h_star_in_base_y, h_star_in_base_z, J_star_t_8, J_star_t_9, J_star_t_10,
-        J_star_t_12, J_star_t_13, J_star_t_15, Z_p_x, Z_p_y, Z_p_z, Z_q_in_base_x, Z_q_in_base_y,
-        Z_q_in_base_z,
-    ) = s
+    sums = [0.0] * 27
+    for leg, k in legs[0]:
+        (
+        J_1_xx, J_2_xx, J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz,
+            J_3_zz, Jc_2_zz, Kd_2_t, Kd_2_t_2, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, Sigma_3_xx,
+            Sigma_3_yy, Sigma_3_zz, branch_1, branch_2, d_Gamma_2_t, d_Gamma_2_y, d_c_yy,
+            d_phi_3_t, g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y,
+            h_3_z, inv_rrrs_platform_joint_offset_x, inv_size_t, inv_size_t_2, rho2_2_t,
+            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
+            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, size, size_t_3,
+        ) = k
+        # (rrrs-K1) from the base point to the connection point
+        q_in_base_x = (
+        R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
+        )
+        q_in_base_y = (
+        R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
+        )
+        q_in_base_z = (
+        R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
+        )
+        S_x = q_in_base_x + t_x - rrrs_base_point_x
+        S_y = q_in_base_y + t_y - rrrs_base_point_y
+        S_z = q_in_base_z + t_z - rrrs_base_point_z
+        # (rrrs-K2) component along the reference direction
+        px_1 = S_x*rrrs_base_frame_xy + S_y*rrrs_base_frame_yy + S_z*rrrs_base_frame_zy
+        # (rrrs-K3) component across the reference direction
+        py_1 = S_x*rrrs_base_frame_xz + S_y*rrrs_base_frame_yz + S_z*rrrs_base_frame_zz
+        # (rrrs-K5) squared amplitude
+        rho2_1 = px_1*px_1 + py_1*py_1
+        # (rrrs-K7) root, with the sign of the branch
+        root_1 = branch_1*sqrt(rho2_1)
+        # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
+        xi_1_t = S_x*rrrs_base_frame_xx + S_y*rrrs_base_frame_yx + S_z*rrrs_base_frame_zx
+        # (rrrs-K12) from the origin of joint 2 to the connection point
+        x_2_z = xi_1_t - rrrs_joint2_offset_x
+        # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
+        Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
+        # (rrrs-K17) factor of the cosine in the equation of joint 2
+        Kc_2 = root_1*rrrs_joint3_offset_x
+        # (rrrs-K18) factor of the sine in the equation of joint 2
+        Ks_2 = rrrs_joint3_offset_x*x_2_z
+        # (rrrs-K19) squared amplitude
+        rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
+        # (rrrs-K20) discriminant
+        disc_2 = rho2_2 - Kd_2*Kd_2
+        # (rrrs-K21) root, with the sign of the branch
+        root_2 = branch_2*sqrt(disc_2)
+        # (rrrs-K27) from the origin of joint 3 to the connection point
+        x_3_x = Kd_2*inv_size_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
+        c_3 = inv_size_t_2*rrrs_platform_joint_offset_x*x_3_x
+        # (rrrs-K30) sine of the angle of joint 3 from its reference direction
+        s_3 = inv_size_t*inv_size_t_2*root_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        # (rrrs-V2) from joint 2 to the connection point, along the links
+        r_2_t = rrrs_platform_joint_offset_x*s_3
+        r_2_x = rrrs_joint3_offset_x + c_3*rrrs_platform_joint_offset_x
+        # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
+        inv_rho2_2 = 1.0/rho2_2
+        c_2 = inv_rho2_2*(Kc_2*Kd_2 + Ks_2*root_2)
+        # (rrrs-K23) sine of the angle of joint 2 from its reference direction
+        s_2 = inv_rho2_2*(Kc_2*root_2 - Kd_2*Ks_2)
+        # (rrrs-V4) velocity of the connection point per rate of joint 1
+        e_1_r2_x = c_2*s_3 - c_3*s_2
+        e_1_r2_y = -c_2*c_3 - s_2*s_3
+        # (rrrs-V3) from joint 1 to the connection point, along the links
+        r_1_r1_x = c_2*root_1 - s_2*xi_1_t
+        r_1_r1_y = -c_2*xi_1_t - root_1*s_2
+        # (rrrs-V4) velocity of the connection point per rate of joint 1
+        v_1_z = e_1_r2_x*(c_3*r_1_r1_y + r_1_r1_x*s_3) - e_1_r2_y*(c_3*r_1_r1_x - r_1_r1_y*s_3)
+        # (rrrs-V2) from joint 2 to the connection point, along the links
+        r_2_r0_x = c_3*r_2_x + r_2_t*s_3
+        r_2_r0_y = r_2_x*s_3 - c_3*r_2_t
+        # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
+        inv_rho2_1 = 1.0/rho2_1
+        c_1 = inv_rho2_1*py_1*root_1
+        # (rrrs-K9) sine of the angle of joint 1 from its reference direction
+        s_1 = inv_rho2_1*px_1*root_1
+        # (rrrs-V7) reciprocal vector 1
+        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*s_1 - c_1*rrrs_base_frame_xy
+        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*s_1 - c_1*rrrs_base_frame_yy
+        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*s_1 - c_1*rrrs_base_frame_zy
+        w_1_t = e_1_r2_x*s_1
+        w_1_t_2 = c_1*e_1_r2_x
+        axis_y_rrrs_axes3_in_base_x = (
+        e_1_r2_y*rrrs_base_frame_xx + rrrs_base_frame_xy*w_1_t + rrrs_base_frame_xz*w_1_t_2
+        )
+        axis_y_rrrs_axes3_in_base_y = (
+        e_1_r2_y*rrrs_base_frame_yx + rrrs_base_frame_yy*w_1_t + rrrs_base_frame_yz*w_1_t_2
+        )
+        axis_y_rrrs_axes3_in_base_z = (
+        e_1_r2_y*rrrs_base_frame_zx + rrrs_base_frame_zy*w_1_t + rrrs_base_frame_zz*w_1_t_2
+        )
+        axis_x_rrrs_axes3_x = (
+        axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
+            axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y
+        )
+        axis_x_rrrs_axes3_y = (
+        axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
+            axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z
+        )
+        axis_x_rrrs_axes3_z = (
+        axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
+            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
+        )
+        # (rrrs-G9) inertia tensor of link 3 about the connection point
+        J_3_t = J_3_xy*s_3
+        _x = J_3_t + J_3_xx*c_3
+        J_3_t_2 = J_3_xy*c_3
+        _x_2 = J_3_t_2 + J_3_yy*s_3
+        _x_3 = J_3_xz*c_3 + J_3_yz*s_3
+        _y = J_3_yz*c_3 - J_3_xz*s_3
+        # (rrrs-N18) inertia tensor of the links from 2 outwards about joint 2
+        Jc_2_xy = J_2_xy + _x_2*c_3 - _x*s_3
+        _y_2 = (
+        -c_2*(-Jc_2_xy*s_2 - c_2*(J_2_yy + c_3*(J_3_yy*c_3 - J_3_t) - s_3*(J_3_t_2 - J_3_xx*s_3)))
+            - s_2*(-Jc_2_xy*c_2 - s_2*(J_2_xx + _x*c_3 + _x_2*s_3))
+        )
+        # (rrrs-V7) reciprocal vector 1
+        inv_v_1_z = 1.0/v_1_z
+        # (rrrs-V8) reciprocal vector 2
+        inv_r_2_r0_y = 1.0/r_2_r0_y
+        # (rrrs-V9) reciprocal vector 3
+        w_3_t = inv_r_2_r0_y*inv_rrrs_platform_joint_offset_x*r_2_r0_x
+        # (rrrs-N50) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        d_Gamma_1_z = e_1_r2_x*h_3_y + inv_v_1_z*(J_1_xx + _y_2) - e_1_r2_y*h_3_x
+        # (rrrs-N41) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        d_Gamma_2_t_2 = d_Gamma_2_t*r_2_r0_x
+        d_Gamma_2_x = -h_3_y - inv_r_2_r0_y*(Jc_2_zz - d_Gamma_2_t_2)
+        # (rrrs-N32) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        d_Gamma_3_t = inv_v_1_z*(-_x_3*s_2 - _y*c_2)
+        d_Gamma_3_x = -h_3_y - inv_r_2_r0_y*(J_3_zz - d_Gamma_2_t_2)
+        # (rrrs-A25) coefficient of the acceleration in: angular acceleration of link 3
+        d_alpha_3_t = e_1_r2_x*inv_v_1_z
+        d_alpha_3_t_2 = e_1_r2_y*inv_v_1_z
+        # (rrrs-N56) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        d_c_xx = d_Gamma_2_x*inv_r_2_r0_y + h_3_y*(w_3_t - inv_r_2_r0_y) - d_Gamma_3_x*w_3_t
+        d_c_xy = d_phi_3_t + d_Gamma_2_y*inv_r_2_r0_y - d_Gamma_2_y*w_3_t
+        d_c_xz = (
+        inv_r_2_r0_y*inv_v_1_z*(-c_2*(J_2_yz + _y) - s_2*(J_2_xz + _x_3)) - d_Gamma_3_t*w_3_t -
+            d_alpha_3_t_2*h_3_z
+        )
+        d_c_yz = d_alpha_3_t*h_3_z - d_Gamma_3_t*inv_rrrs_platform_joint_offset_x
+        # (rrrs-N58) inertia of the leg at the connection point, without the mass gathered there
+        Q_t = d_c_xx - d_c_yy
+        Q_t_2 = 0.5*Q_t
+        Q_t_3 = d_c_xx + d_Gamma_1_z*inv_v_1_z + d_alpha_3_t*h_3_y - d_alpha_3_t_2*h_3_x
+        Q_t_4 = 0.5*Q_t_3
+        Q_t_5 = (
+        axis_x_rrrs_axes3_x*d_c_xy + axis_z_rrrs_axes3_in_base_x*d_c_yz -
+            Q_t_2*axis_y_rrrs_axes3_in_base_x
+        )
+        Q_t_6 = (
+        axis_x_rrrs_axes3_y*d_c_xy + axis_z_rrrs_axes3_in_base_y*d_c_yz -
+            Q_t_2*axis_y_rrrs_axes3_in_base_y
+        )
+        Q_t_7 = (
+        axis_x_rrrs_axes3_z*d_c_xy + axis_z_rrrs_axes3_in_base_z*d_c_yz -
+            Q_t_2*axis_y_rrrs_axes3_in_base_z
+        )
+        Q_t_8 = Q_t_4*axis_z_rrrs_axes3_in_base_x - axis_x_rrrs_axes3_x*d_c_xz
+        Q_t_9 = Q_t_4*axis_z_rrrs_axes3_in_base_y - axis_x_rrrs_axes3_y*d_c_xz
+        Q_t_10 = Q_t_4*axis_z_rrrs_axes3_in_base_z - axis_x_rrrs_axes3_z*d_c_xz
+        Q_t_11 = Q_t_5*axis_y_rrrs_axes3_in_base_x - Q_t_8*axis_z_rrrs_axes3_in_base_x
+        Q_t_12 = 2.0*Q_t_11 + d_c_xx
+        Q_t_13 = (
+        Q_t_5*axis_y_rrrs_axes3_in_base_y + Q_t_6*axis_y_rrrs_axes3_in_base_x -
+            Q_t_8*axis_z_rrrs_axes3_in_base_y - Q_t_9*axis_z_rrrs_axes3_in_base_x
+        )
+        Q_t_14 = (
+        Q_t_5*axis_y_rrrs_axes3_in_base_z + Q_t_7*axis_y_rrrs_axes3_in_base_x -
+            Q_t_10*axis_z_rrrs_axes3_in_base_x - Q_t_8*axis_z_rrrs_axes3_in_base_z
+        )
+        Q_t_15 = Q_t_6*axis_y_rrrs_axes3_in_base_y - Q_t_9*axis_z_rrrs_axes3_in_base_y
+        Q_t_16 = 2.0*Q_t_15 + d_c_xx
+        Q_t_17 = (
+        Q_t_6*axis_y_rrrs_axes3_in_base_z + Q_t_7*axis_y_rrrs_axes3_in_base_y -
+            Q_t_10*axis_z_rrrs_axes3_in_base_y - Q_t_9*axis_z_rrrs_axes3_in_base_z
+        )
+        Q_t_18 = Q_t_7*axis_y_rrrs_axes3_in_base_z - Q_t_10*axis_z_rrrs_axes3_in_base_z
+        Q_t_19 = 2.0*Q_t_18 + d_c_xx
+        # (M2) coupling block of M
+        M_ta_t = Q_t_13*q_in_base_z
+        M_ta_t_2 = Q_t_14*q_in_base_y
+        M_ta_t_3 = M_ta_t - M_ta_t_2
+        M_ta_t_4 = Q_t_12*q_in_base_z - Q_t_14*q_in_base_x
+        M_ta_t_5 = Q_t_12*q_in_base_y - Q_t_13*q_in_base_x
+        M_ta_t_6 = Q_t_16*q_in_base_z - Q_t_17*q_in_base_y
+        M_ta_t_7 = Q_t_17*q_in_base_x
+        M_ta_t_8 = M_ta_t - M_ta_t_7
+        M_ta_t_9 = Q_t_13*q_in_base_y - Q_t_16*q_in_base_x
+        M_ta_t_10 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y
+        M_ta_t_11 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x
+        M_ta_t_12 = M_ta_t_7 - M_ta_t_2
+        # (M3) rotational block of M
+        M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y
+        M_aa_t_2 = M_ta_t_8*q_in_base_z - M_ta_t_11*q_in_base_y
+        M_aa_t_3 = M_ta_t_12*q_in_base_y + M_ta_t_9*q_in_base_z
+        M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x
+        M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z
+        M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x
+        # (rrrs-V1) velocity of the connection point
+        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
+        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
+        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
+        S_dot_x = S_dot_t + t_dot_x
+        S_dot_y = S_dot_t_2 + t_dot_y
+        S_dot_z = S_dot_t_3 + t_dot_z
+        # (rrrs-V10) rate of joint 1
+        qd_2 = (
+        inv_r_2_r0_y*(S_dot_x*axis_x_rrrs_axes3_x + S_dot_y*axis_x_rrrs_axes3_y +
+            S_dot_z*axis_x_rrrs_axes3_z)
+        )
+        qd_3 = (
+        inv_rrrs_platform_joint_offset_x*(S_dot_x*axis_y_rrrs_axes3_in_base_x +
+            S_dot_y*axis_y_rrrs_axes3_in_base_y + S_dot_z*axis_y_rrrs_axes3_in_base_z +
+            qd_2*r_2_r0_x)
+        )
+        qd_1 = (
+        inv_v_1_z*(S_dot_x*axis_z_rrrs_axes3_in_base_x + S_dot_y*axis_z_rrrs_axes3_in_base_y +
+            S_dot_z*axis_z_rrrs_axes3_in_base_z)
+        )
+        # (rrrs-V13) angular velocity of link 1
+        omega_1_t = qd_1*s_2
+        omega_1_t_2 = c_2*qd_1
+        # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
+        zeta_2_x = omega_1_t_2*qd_2
+        zeta_2_y = omega_1_t*qd_2
+        # (rrrs-V15) angular velocity of link 2
+        omega_2_r0_x = omega_1_t_2*s_3 - c_3*omega_1_t
+        omega_2_r0_y = -c_3*omega_1_t_2 - omega_1_t*s_3
+        # (rrrs-A5) angular acceleration of link 3 from the turning of axis 3
+        zeta_3_y = omega_2_r0_x*qd_3
+        # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
+        zeta_2_r0_y = s_3*zeta_2_x - c_3*zeta_2_y
+        # (rrrs-A6) angular acceleration of link 3 at zero joint accelerations
+        beta_3_y = zeta_2_r0_y - zeta_3_y
+        # (rrrs-V17) angular velocity of link 3
+        omega_3_z = qd_3 - qd_2
+        # (rrrs-V16) centripetal tensor of link 2
+        W_2_t = omega_1_t*omega_1_t
+        W_2_t_2 = omega_1_t_2*omega_1_t_2
+        W_2_t_3 = qd_2*qd_2
+        W_2_xy = omega_1_t*omega_1_t_2
+        # (rrrs-V18) centripetal tensor of link 3
+        W_3_t = omega_2_r0_x*omega_2_r0_x
+        W_3_t_2 = omega_2_r0_y*omega_2_r0_y
+        W_3_t_3 = omega_3_z*omega_3_z
+        W_3_xy = omega_2_r0_x*omega_2_r0_y
+        W_3_xz = omega_2_r0_x*omega_3_z
+        W_3_yz = omega_2_r0_y*omega_3_z
+        # (rrrs-A7) acceleration of the connection point at zero joint accelerations
+        bias_t = rrrs_joint2_offset_x*s_2
+        bias_t_2 = c_2*rrrs_joint2_offset_x
+        bias_t_3 = (
+        omega_2_r0_x*(-bias_t*s_3 - bias_t_2*c_3) - omega_2_r0_y*(bias_t_2*s_3 - bias_t*c_3)
+        )
+        bias_t_4 = c_3*rrrs_joint3_offset_x
+        bias_t_5 = rrrs_joint3_offset_x*s_3
+        bias_t_6 = bias_t_5*qd_2
+        bias_t_7 = bias_t_4*qd_2
+        bias_t_8 = bias_t_5*omega_2_r0_x - bias_t_4*omega_2_r0_y
+        bias_t_9 = omega_3_z*rrrs_platform_joint_offset_x
+        bias_t_10 = omega_2_r0_y*rrrs_platform_joint_offset_x
+        bias_x = (
+        bias_t_3*omega_2_r0_y + bias_t_8*omega_2_r0_y - bias_t_10*omega_2_r0_y - bias_t_7*qd_2 -
+            bias_t_9*omega_3_z
+        )
+        bias_y = (
+        bias_t_10*omega_2_r0_x - bias_t_3*omega_2_r0_x - bias_t_6*qd_2 - bias_t_8*omega_2_r0_x
+        )
+        bias_z = (
+        bias_t_5*(c_3*zeta_2_x + s_3*zeta_2_y) + bias_t_9*omega_2_r0_x -
+            beta_3_y*rrrs_platform_joint_offset_x - bias_t_4*zeta_2_r0_y - bias_t_6*omega_2_r0_y -
+            bias_t_7*omega_2_r0_x
+        )
+        # (rrrs-A1) centripetal acceleration of the connection point
+        u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z
+        u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x
+        u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y
+        u_1_tip_x = (
+        axis_x_rrrs_axes3_x*u_1_x + axis_x_rrrs_axes3_y*u_1_y + axis_x_rrrs_axes3_z*u_1_z
+        )
+        u_1_tip_y = (
+        axis_y_rrrs_axes3_in_base_x*u_1_x + axis_y_rrrs_axes3_in_base_y*u_1_y +
+            axis_y_rrrs_axes3_in_base_z*u_1_z
+        )
+        u_1_tip_z = (
+        axis_z_rrrs_axes3_in_base_x*u_1_x + axis_z_rrrs_axes3_in_base_y*u_1_y +
+            axis_z_rrrs_axes3_in_base_z*u_1_z
+        )
+        # (rrrs-A9) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        rel_o_x = u_1_tip_x - bias_x
+        rel_o_y = u_1_tip_y - bias_y
+        rel_o_z = u_1_tip_z - bias_z
+        # (rrrs-A11) remainder without the acceleration in: acceleration of joint 1
+        qdd_2_o = inv_r_2_r0_y*rel_o_x
+        qdd_1_o = inv_v_1_z*rel_o_z
+        # (rrrs-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
+        g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
+        g_r3_x = -c_2*g_r1_y - g_r0_z*s_2
+        g_r3_y = g_r1_y*s_2 - c_2*g_r0_z
+        # (rrrs-A17) remainder without the acceleration in: angular acceleration of link 1
+        alpha_1_o_t = qdd_1_o*s_2
+        alpha_1_o_t_2 = c_2*qdd_1_o
+        # (rrrs-A21) remainder without the acceleration in: angular acceleration of link 2
+        alpha_2_o_x = zeta_2_x - alpha_1_o_t
+        alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y
+        # (rrrs-A23) remainder of the acceleration tensor of link 2
+        B_2_o_xy = W_2_xy + qdd_2_o
+        B_2_o_yx = W_2_xy - qdd_2_o
+        B_2_o_zx = zeta_2_y - alpha_2_o_y
+        B_2_o_zy = alpha_2_o_x + zeta_2_x
+        # (rrrs-N37) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        mu_2_o_x = (
+        B_2_o_yx*J_2_xz + B_2_o_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) + g_r3_y*h_2_z -
+            B_2_o_zx*J_2_xy - Sigma_2_zz*alpha_1_o_t - g_r1_x*h_2_y
+        )
+        mu_2_o_y = (
+        B_2_o_zy*J_2_xy + g_r1_x*h_2_x - B_2_o_xy*J_2_yz - B_2_o_zx*Sigma_2_xx - J_2_xz*(W_2_t -
+            W_2_t_3) - Sigma_2_zz*alpha_1_o_t_2 - g_r3_x*h_2_z
+        )
+        mu_2_o_z = (
+        B_2_o_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + g_r3_x*h_2_y - B_2_o_xy*Sigma_2_yy -
+            J_2_xz*alpha_1_o_t - J_2_yz*alpha_1_o_t_2 - g_r3_y*h_2_x
+        )
+        # (rrrs-N10) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        acc_3_o_x = u_1_tip_x + g_r3_y*s_3 - c_3*g_r3_x
+        acc_3_o_y = u_1_tip_y - c_3*g_r3_y - g_r3_x*s_3
+        acc_3_o_z = u_1_tip_z - g_r1_x
+        # (rrrs-A26) remainder without the acceleration in: angular acceleration of link 3
+        alpha_3_o_x = alpha_2_o_x*c_3 + omega_2_r0_y*qd_3 - alpha_2_o_y*s_3
+        alpha_3_o_y = alpha_2_o_x*s_3 + alpha_2_o_y*c_3 - zeta_3_y
+        alpha_3_o_z = inv_rrrs_platform_joint_offset_x*(rel_o_y + qdd_2_o*r_2_r0_x) - qdd_2_o
+        # (rrrs-A28) remainder of the acceleration tensor of link 3
+        B_3_o_xy = W_3_xy - alpha_3_o_z
+        B_3_o_xz = W_3_xz + alpha_3_o_y
+        B_3_o_yx = W_3_xy + alpha_3_o_z
+        B_3_o_yz = W_3_yz - alpha_3_o_x
+        B_3_o_zx = W_3_xz - alpha_3_o_y
+        B_3_o_zy = W_3_yz + alpha_3_o_x
+        # (rrrs-N30) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        mu_3_o_x = (
+        B_3_o_yx*J_3_xz + B_3_o_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) + acc_3_o_z*h_3_y -
+            B_3_o_yz*Sigma_3_zz - B_3_o_zx*J_3_xy - acc_3_o_y*h_3_z
+        )
+        mu_3_o_y = (
+        B_3_o_xz*Sigma_3_zz + B_3_o_zy*J_3_xy + acc_3_o_x*h_3_z - B_3_o_xy*J_3_yz -
+            B_3_o_zx*Sigma_3_xx - J_3_xz*(W_3_t - W_3_t_3) - acc_3_o_z*h_3_x
+        )
+        mu_3_o_z = (
+        B_3_o_xz*J_3_yz + B_3_o_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + acc_3_o_y*h_3_x -
+            B_3_o_xy*Sigma_3_yy - B_3_o_yz*J_3_xz - acc_3_o_x*h_3_y
+        )
+        # (rrrs-N39) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        N_2_o_x = mu_2_o_x + c_3*mu_3_o_x + mu_3_o_y*s_3
+        N_2_o_y = mu_2_o_y + c_3*mu_3_o_y - mu_3_o_x*s_3
+        N_2_o_z = mu_2_o_z + mu_3_o_z
+        # (rrrs-N46) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        mu_1_o_z = J_1_xx*qdd_1_o - g_r1_x*h_1_y - g_r1_y*h_1_z
+        # (rrrs-N48) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        N_1_o_z = mu_1_o_z - N_2_o_x*s_2 - N_2_o_y*c_2
+        # (rrrs-N54) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        G_o_t = inv_rrrs_platform_joint_offset_x*mu_3_o_z
+        # (rrrs-N57) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        c_o_x = (
+        h_3_x*(W_3_t_2 + W_3_t_3) - B_3_o_xy*h_3_y - B_3_o_xz*h_3_z - inv_r_2_r0_y*(G_o_t*r_2_r0_x
+            - N_2_o_z)
+        )
+        c_o_y = h_3_y*(W_3_t + W_3_t_3) - G_o_t - B_3_o_yx*h_3_x - B_3_o_yz*h_3_z
+        c_o_z = h_3_z*(W_3_t + W_3_t_2) - B_3_o_zx*h_3_x - B_3_o_zy*h_3_y - N_1_o_z*inv_v_1_z
+        # (rrrs-N59) velocity and gravity terms of the leg force
+        U_in_base_x = (
+        -axis_x_rrrs_axes3_x*c_o_x - axis_y_rrrs_axes3_in_base_x*c_o_y -
+            axis_z_rrrs_axes3_in_base_x*c_o_z
+        )
+        U_in_base_y = (
+        -axis_x_rrrs_axes3_y*c_o_x - axis_y_rrrs_axes3_in_base_y*c_o_y -
+            axis_z_rrrs_axes3_in_base_y*c_o_z
+        )
+        U_in_base_z = (
+        -axis_x_rrrs_axes3_z*c_o_x - axis_y_rrrs_axes3_in_base_z*c_o_y -
+            axis_z_rrrs_axes3_in_base_z*c_o_z
+        )
+        # (M7) rotational part of Z
+        Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z
+        Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
+        Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
+        # (rrrs-V7) reciprocal vector 1
+        w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_v_1_z
+        w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_v_1_z
+        w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_v_1_z
+        # (M8) moment of the column's unit force about the platform origin
+        H_a_1_x = q_in_base_y*w_1_t_5 - q_in_base_z*w_1_t_4
+        H_a_1_y = q_in_base_z*w_1_t_3 - q_in_base_x*w_1_t_5
+        H_a_1_z = q_in_base_x*w_1_t_4 - q_in_base_y*w_1_t_3
+        # (rrrs-V8) reciprocal vector 2
+        w_2_t = axis_x_rrrs_axes3_x*inv_r_2_r0_y
+        w_2_t_2 = axis_x_rrrs_axes3_y*inv_r_2_r0_y
+        w_2_t_3 = axis_x_rrrs_axes3_z*inv_r_2_r0_y
+        # (M9) moment of the column's unit force about the platform origin
+        H_a_2_x = q_in_base_z*w_2_t_2 - q_in_base_y*w_2_t_3
+        H_a_2_y = q_in_base_x*w_2_t_3 - q_in_base_z*w_2_t
+        H_a_2_z = q_in_base_y*w_2_t - q_in_base_x*w_2_t_2
+        ok = (
+        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) >
+            _TOLERANCE * _TOLERANCE * rho2_2_t) & (disc_2 >= 0.0) & (abs(v_1_z) > _TOLERANCE *
+            size) & (abs(-r_2_r0_y) > _TOLERANCE * size))
+        )
+        sums = m.added(sums, leg, (
+        Q_t_12, Q_t_13, Q_t_14, Q_t_16, Q_t_17, Q_t_19, M_ta_t_3, M_ta_t_4, M_ta_t_5,
+            M_ta_t_6, M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2,
+            M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6, U_in_base_x, U_in_base_y, U_in_base_z,
+            Z_a_t, Z_a_t_2, Z_a_t_3,
+        ))
+        out_H[[0, 2, 4][leg]] = w_1_t_3
+        out_H[[6, 8, 10][leg]] = w_1_t_4
+        out_H[[12, 14, 16][leg]] = w_1_t_5
+        out_H[[18, 20, 22][leg]] = H_a_1_x
+        out_H[[24, 26, 28][leg]] = H_a_1_y
+        out_H[[30, 32, 34][leg]] = H_a_1_z
+        out_H[[1, 3, 5][leg]] = -w_2_t
+        out_H[[7, 9, 11][leg]] = -w_2_t_2
+        out_H[[13, 15, 17][leg]] = -w_2_t_3
+        out_H[[19, 21, 23][leg]] = H_a_2_x
+        out_H[[25, 27, 29][leg]] = H_a_2_y
+        out_H[[31, 33, 35][leg]] = H_a_2_z
     (
     total_rrrs_xx, total_rrrs_xy, total_rrrs_xz, total_rrrs_yy, total_rrrs_yz, total_rrrs_zz,
         total_rrrs_xx_2, total_rrrs_xy_2, total_rrrs_xz_2, total_rrrs_yx, total_rrrs_yy_2,
         total_rrrs_yz_2, total_rrrs_zx, total_rrrs_zy, total_rrrs_zz_2, total_rrrs_xx_3,
         total_rrrs_xy_3, total_rrrs_xz_3, total_rrrs_yy_3, total_rrrs_yz_3, total_rrrs_zz_3,
         total_rrrs_x, total_rrrs_y, total_rrrs_z, total_rrrs_x_2, total_rrrs_y_2, total_rrrs_z_2,
-    ) = t
+    ) = sums
     # (M1) translational block of M
     M_tt_xx = m_star - total_rrrs_xx
     M_tt_yy = m_star - total_rrrs_yy
@@ -1486,23 +1878,59 @@ def _dynamics_after(c, s, t, f):
     Z_a_x = Z_q_in_base_x + total_rrrs_x_2
     Z_a_y = Z_q_in_base_y + total_rrrs_y_2
     Z_a_z = Z_q_in_base_z + total_rrrs_z_2
-    ok = True
-    return (
-    ok, (M_tt_xx, -total_rrrs_xy, -total_rrrs_xy, -total_rrrs_xz, -total_rrrs_xz, M_tt_yy,
-        -total_rrrs_yz, -total_rrrs_yz, M_tt_zz, total_rrrs_xx_2, total_rrrs_xx_2, M_ta_xy,
-        M_ta_xy, M_ta_xz, M_ta_xz, M_ta_yx, M_ta_yx, -total_rrrs_yy_2, -total_rrrs_yy_2, M_ta_yz,
-        M_ta_yz, M_ta_zx, M_ta_zx, M_ta_zy, M_ta_zy, -total_rrrs_zz_2, -total_rrrs_zz_2, M_aa_xx,
-        M_aa_xy, M_aa_xy, M_aa_xz, M_aa_xz, M_aa_yy, M_aa_yz, M_aa_yz, M_aa_zz, Z_t_x, Z_t_y,
-        Z_t_z, Z_a_x, Z_a_y, Z_a_z,),
-    )
+    out_M[0] = M_tt_xx
+    out_M[1] = -total_rrrs_xy
+    out_M[6] = -total_rrrs_xy
+    out_M[2] = -total_rrrs_xz
+    out_M[12] = -total_rrrs_xz
+    out_M[7] = M_tt_yy
+    out_M[8] = -total_rrrs_yz
+    out_M[13] = -total_rrrs_yz
+    out_M[14] = M_tt_zz
+    out_M[3] = total_rrrs_xx_2
+    out_M[18] = total_rrrs_xx_2
+    out_M[4] = M_ta_xy
+    out_M[24] = M_ta_xy
+    out_M[5] = M_ta_xz
+    out_M[30] = M_ta_xz
+    out_M[9] = M_ta_yx
+    out_M[19] = M_ta_yx
+    out_M[10] = -total_rrrs_yy_2
+    out_M[25] = -total_rrrs_yy_2
+    out_M[11] = M_ta_yz
+    out_M[31] = M_ta_yz
+    out_M[15] = M_ta_zx
+    out_M[20] = M_ta_zx
+    out_M[16] = M_ta_zy
+    out_M[26] = M_ta_zy
+    out_M[17] = -total_rrrs_zz_2
+    out_M[32] = -total_rrrs_zz_2
+    out_M[21] = M_aa_xx
+    out_M[22] = M_aa_xy
+    out_M[27] = M_aa_xy
+    out_M[23] = M_aa_xz
+    out_M[33] = M_aa_xz
+    out_M[28] = M_aa_yy
+    out_M[29] = M_aa_yz
+    out_M[34] = M_aa_yz
+    out_M[35] = M_aa_zz
+    out_Z[0] = Z_t_x
+    out_Z[1] = Z_t_y
+    out_Z[2] = Z_t_z
+    out_Z[3] = Z_a_x
+    out_Z[4] = Z_a_y
+    out_Z[5] = Z_a_z
+    return ok, (out_M, out_Z, out_H,)
 
 
 # M: 666 mul, 489 add, 12 div, 6 sqrt, 0 trig
-def _M_before(c, X, f):
+def _run_M(m, X):
+    sqrt = m.sqrt
+    shared, legs = m.constants("M")
     (
     J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
-        h_star_z,
-    ) = c
+        h_star_z, m_star,
+    ) = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -1537,6 +1965,9 @@ def _M_before(c, X, f):
     R_zx = quaternion_xz - quaternion_wy
     R_zy = quaternion_wx + quaternion_yz
     R_zz = 1.0 - quaternion_xx - quaternion_yy
+    ok = True
+    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    out_M = m.zeros(36)
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -1557,239 +1988,226 @@ def _M_before(c, X, f):
     J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
     J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz
     J_star_t_15 = 2.0*J_star_t_14 + J_star_xx
-    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    return (
-    ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, h_star_in_base_x,
-        h_star_in_base_y, h_star_in_base_z, J_star_t_8, J_star_t_9, J_star_t_10, J_star_t_12,
-        J_star_t_13, J_star_t_15,), (),
-    )
-
-
-def _M_rrrs(c, k, x, s, f):
-    sqrt = f.sqrt
-    (
-    J_1_xx, J_2_xx, J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz,
-        J_3_zz, Jc_2_zz, Kd_2_t, Kd_2_t_2, branch_1, branch_2, d_Gamma_2_t, d_Gamma_2_y, d_c_yy,
-        d_phi_3_t, h_3_x, h_3_y, h_3_z, inv_rrrs_platform_joint_offset_x, inv_size_t,
-        inv_size_t_2, rho2_2_t, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
-        rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-        rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-        rrrs_base_point_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
-        rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
-        rrrs_platform_point_z, size, size_t_3,
-    ) = k
-    t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
-    # (rrrs-K1) from the base point to the connection point
-    q_in_base_x = (
-    R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
-    )
-    q_in_base_y = (
-    R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
-    )
-    q_in_base_z = (
-    R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
-    )
-    S_x = q_in_base_x + t_x - rrrs_base_point_x
-    S_y = q_in_base_y + t_y - rrrs_base_point_y
-    S_z = q_in_base_z + t_z - rrrs_base_point_z
-    # (rrrs-K2) component along the reference direction
-    px_1 = S_x*rrrs_base_frame_xy + S_y*rrrs_base_frame_yy + S_z*rrrs_base_frame_zy
-    # (rrrs-K3) component across the reference direction
-    py_1 = S_x*rrrs_base_frame_xz + S_y*rrrs_base_frame_yz + S_z*rrrs_base_frame_zz
-    # (rrrs-K5) squared amplitude
-    rho2_1 = px_1*px_1 + py_1*py_1
-    # (rrrs-K7) root, with the sign of the branch
-    root_1 = branch_1*sqrt(rho2_1)
-    # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
-    xi_1_t = S_x*rrrs_base_frame_xx + S_y*rrrs_base_frame_yx + S_z*rrrs_base_frame_zx
-    # (rrrs-K12) from the origin of joint 2 to the connection point
-    x_2_z = xi_1_t - rrrs_joint2_offset_x
-    # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-    Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
-    Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
-    # (rrrs-K17) factor of the cosine in the equation of joint 2
-    Kc_2 = root_1*rrrs_joint3_offset_x
-    # (rrrs-K18) factor of the sine in the equation of joint 2
-    Ks_2 = rrrs_joint3_offset_x*x_2_z
-    # (rrrs-K19) squared amplitude
-    rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
-    # (rrrs-K20) discriminant
-    disc_2 = rho2_2 - Kd_2*Kd_2
-    # (rrrs-K21) root, with the sign of the branch
-    root_2 = branch_2*sqrt(disc_2)
-    # (rrrs-K27) from the origin of joint 3 to the connection point
-    x_3_x = Kd_2*inv_size_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
-    # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-    c_3 = inv_size_t_2*rrrs_platform_joint_offset_x*x_3_x
-    # (rrrs-K30) sine of the angle of joint 3 from its reference direction
-    s_3 = inv_size_t*inv_size_t_2*root_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
-    # (rrrs-V2) from joint 2 to the connection point, along the links
-    r_2_t = rrrs_platform_joint_offset_x*s_3
-    r_2_x = rrrs_joint3_offset_x + c_3*rrrs_platform_joint_offset_x
-    # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
-    inv_rho2_2 = 1.0/rho2_2
-    c_2 = inv_rho2_2*(Kc_2*Kd_2 + Ks_2*root_2)
-    # (rrrs-K23) sine of the angle of joint 2 from its reference direction
-    s_2 = inv_rho2_2*(Kc_2*root_2 - Kd_2*Ks_2)
-    # (rrrs-V4) velocity of the connection point per rate of joint 1
-    e_1_r2_x = c_2*s_3 - c_3*s_2
-    e_1_r2_y = -c_2*c_3 - s_2*s_3
-    # (rrrs-V3) from joint 1 to the connection point, along the links
-    r_1_r1_x = c_2*root_1 - s_2*xi_1_t
-    r_1_r1_y = -c_2*xi_1_t - root_1*s_2
-    # (rrrs-V4) velocity of the connection point per rate of joint 1
-    v_1_z = e_1_r2_x*(c_3*r_1_r1_y + r_1_r1_x*s_3) - e_1_r2_y*(c_3*r_1_r1_x - r_1_r1_y*s_3)
-    # (rrrs-V2) from joint 2 to the connection point, along the links
-    r_2_r0_x = c_3*r_2_x + r_2_t*s_3
-    r_2_r0_y = r_2_x*s_3 - c_3*r_2_t
-    # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
-    inv_rho2_1 = 1.0/rho2_1
-    c_1 = inv_rho2_1*py_1*root_1
-    # (rrrs-K9) sine of the angle of joint 1 from its reference direction
-    s_1 = inv_rho2_1*px_1*root_1
-    # (rrrs-V7) reciprocal vector 1
-    axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*s_1 - c_1*rrrs_base_frame_xy
-    axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*s_1 - c_1*rrrs_base_frame_yy
-    axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*s_1 - c_1*rrrs_base_frame_zy
-    w_1_t = e_1_r2_x*s_1
-    w_1_t_2 = c_1*e_1_r2_x
-    axis_y_rrrs_axes3_in_base_x = (
-    e_1_r2_y*rrrs_base_frame_xx + rrrs_base_frame_xy*w_1_t + rrrs_base_frame_xz*w_1_t_2
-    )
-    axis_y_rrrs_axes3_in_base_y = (
-    e_1_r2_y*rrrs_base_frame_yx + rrrs_base_frame_yy*w_1_t + rrrs_base_frame_yz*w_1_t_2
-    )
-    axis_y_rrrs_axes3_in_base_z = (
-    e_1_r2_y*rrrs_base_frame_zx + rrrs_base_frame_zy*w_1_t + rrrs_base_frame_zz*w_1_t_2
-    )
-    axis_x_rrrs_axes3_x = (
-    axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
-        axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y
-    )
-    axis_x_rrrs_axes3_y = (
-    axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
-        axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z
-    )
-    axis_x_rrrs_axes3_z = (
-    axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
-        axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
-    )
-    # (rrrs-G9) inertia tensor of link 3 about the connection point
-    J_3_t = J_3_xy*s_3
-    _x = J_3_t + J_3_xx*c_3
-    J_3_t_2 = J_3_xy*c_3
-    _x_2 = J_3_t_2 + J_3_yy*s_3
-    _x_3 = J_3_xz*c_3 + J_3_yz*s_3
-    _y = J_3_yz*c_3 - J_3_xz*s_3
-    # (rrrs-N18) inertia tensor of the links from 2 outwards about joint 2
-    Jc_2_xy = J_2_xy + _x_2*c_3 - _x*s_3
-    _y_2 = (
-    -c_2*(-Jc_2_xy*s_2 - c_2*(J_2_yy + c_3*(J_3_yy*c_3 - J_3_t) - s_3*(J_3_t_2 - J_3_xx*s_3))) -
-        s_2*(-Jc_2_xy*c_2 - s_2*(J_2_xx + _x*c_3 + _x_2*s_3))
-    )
-    # (rrrs-V7) reciprocal vector 1
-    inv_v_1_z = 1.0/v_1_z
-    # (rrrs-V8) reciprocal vector 2
-    inv_r_2_r0_y = 1.0/r_2_r0_y
-    # (rrrs-V9) reciprocal vector 3
-    w_3_t = inv_r_2_r0_y*inv_rrrs_platform_joint_offset_x*r_2_r0_x
-    # (rrrs-N50) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-    d_Gamma_1_z = e_1_r2_x*h_3_y + inv_v_1_z*(J_1_xx + _y_2) - e_1_r2_y*h_3_x
-    # (rrrs-N41) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-    d_Gamma_2_t_2 = d_Gamma_2_t*r_2_r0_x
-    d_Gamma_2_x = -h_3_y - inv_r_2_r0_y*(Jc_2_zz - d_Gamma_2_t_2)
-    # (rrrs-N32) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-    d_Gamma_3_t = inv_v_1_z*(-_x_3*s_2 - _y*c_2)
-    d_Gamma_3_x = -h_3_y - inv_r_2_r0_y*(J_3_zz - d_Gamma_2_t_2)
-    # (rrrs-A25) coefficient of the acceleration in: angular acceleration of link 3
-    d_alpha_3_t = e_1_r2_x*inv_v_1_z
-    d_alpha_3_t_2 = e_1_r2_y*inv_v_1_z
-    # (rrrs-N56) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_xx = d_Gamma_2_x*inv_r_2_r0_y + h_3_y*(w_3_t - inv_r_2_r0_y) - d_Gamma_3_x*w_3_t
-    d_c_xy = d_phi_3_t + d_Gamma_2_y*inv_r_2_r0_y - d_Gamma_2_y*w_3_t
-    d_c_xz = (
-    inv_r_2_r0_y*inv_v_1_z*(-c_2*(J_2_yz + _y) - s_2*(J_2_xz + _x_3)) - d_Gamma_3_t*w_3_t -
-        d_alpha_3_t_2*h_3_z
-    )
-    d_c_yz = d_alpha_3_t*h_3_z - d_Gamma_3_t*inv_rrrs_platform_joint_offset_x
-    # (rrrs-N58) inertia of the leg at the connection point, without the mass gathered there
-    Q_t = d_c_xx - d_c_yy
-    Q_t_2 = 0.5*Q_t
-    Q_t_3 = d_c_xx + d_Gamma_1_z*inv_v_1_z + d_alpha_3_t*h_3_y - d_alpha_3_t_2*h_3_x
-    Q_t_4 = 0.5*Q_t_3
-    Q_t_5 = (
-    axis_x_rrrs_axes3_x*d_c_xy + axis_z_rrrs_axes3_in_base_x*d_c_yz -
-        Q_t_2*axis_y_rrrs_axes3_in_base_x
-    )
-    Q_t_6 = (
-    axis_x_rrrs_axes3_y*d_c_xy + axis_z_rrrs_axes3_in_base_y*d_c_yz -
-        Q_t_2*axis_y_rrrs_axes3_in_base_y
-    )
-    Q_t_7 = (
-    axis_x_rrrs_axes3_z*d_c_xy + axis_z_rrrs_axes3_in_base_z*d_c_yz -
-        Q_t_2*axis_y_rrrs_axes3_in_base_z
-    )
-    Q_t_8 = Q_t_4*axis_z_rrrs_axes3_in_base_x - axis_x_rrrs_axes3_x*d_c_xz
-    Q_t_9 = Q_t_4*axis_z_rrrs_axes3_in_base_y - axis_x_rrrs_axes3_y*d_c_xz
-    Q_t_10 = Q_t_4*axis_z_rrrs_axes3_in_base_z - axis_x_rrrs_axes3_z*d_c_xz
-    Q_t_11 = Q_t_5*axis_y_rrrs_axes3_in_base_x - Q_t_8*axis_z_rrrs_axes3_in_base_x
-    Q_t_12 = 2.0*Q_t_11 + d_c_xx
-    Q_t_13 = (
-    Q_t_5*axis_y_rrrs_axes3_in_base_y + Q_t_6*axis_y_rrrs_axes3_in_base_x -
-        Q_t_8*axis_z_rrrs_axes3_in_base_y - Q_t_9*axis_z_rrrs_axes3_in_base_x
-    )
-    Q_t_14 = (
-    Q_t_5*axis_y_rrrs_axes3_in_base_z + Q_t_7*axis_y_rrrs_axes3_in_base_x -
-        Q_t_10*axis_z_rrrs_axes3_in_base_x - Q_t_8*axis_z_rrrs_axes3_in_base_z
-    )
-    Q_t_15 = Q_t_6*axis_y_rrrs_axes3_in_base_y - Q_t_9*axis_z_rrrs_axes3_in_base_y
-    Q_t_16 = 2.0*Q_t_15 + d_c_xx
-    Q_t_17 = (
-    Q_t_6*axis_y_rrrs_axes3_in_base_z + Q_t_7*axis_y_rrrs_axes3_in_base_y -
-        Q_t_10*axis_z_rrrs_axes3_in_base_y - Q_t_9*axis_z_rrrs_axes3_in_base_z
-    )
-    Q_t_18 = Q_t_7*axis_y_rrrs_axes3_in_base_z - Q_t_10*axis_z_rrrs_axes3_in_base_z
-    Q_t_19 = 2.0*Q_t_18 + d_c_xx
-    # (M2) coupling block of M
-    M_ta_t = Q_t_13*q_in_base_z
-    M_ta_t_2 = Q_t_14*q_in_base_y
-    M_ta_t_3 = M_ta_t - M_ta_t_2
-    M_ta_t_4 = Q_t_12*q_in_base_z - Q_t_14*q_in_base_x
-    M_ta_t_5 = Q_t_12*q_in_base_y - Q_t_13*q_in_base_x
-    M_ta_t_6 = Q_t_16*q_in_base_z - Q_t_17*q_in_base_y
-    M_ta_t_7 = Q_t_17*q_in_base_x
-    M_ta_t_8 = M_ta_t - M_ta_t_7
-    M_ta_t_9 = Q_t_13*q_in_base_y - Q_t_16*q_in_base_x
-    M_ta_t_10 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y
-    M_ta_t_11 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x
-    M_ta_t_12 = M_ta_t_7 - M_ta_t_2
-    # (M3) rotational block of M
-    M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y
-    M_aa_t_2 = M_ta_t_8*q_in_base_z - M_ta_t_11*q_in_base_y
-    M_aa_t_3 = M_ta_t_12*q_in_base_y + M_ta_t_9*q_in_base_z
-    M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x
-    M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z
-    M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * rho2_2_t) & (disc_2 >= 0.0) & (abs(v_1_z) > _TOLERANCE * size) & (abs(-r_2_r0_y) > _TOLERANCE * size)
-    return (
-    ok, (Q_t_12, Q_t_13, Q_t_14, Q_t_16, Q_t_17, Q_t_19, M_ta_t_3, M_ta_t_4, M_ta_t_5, M_ta_t_6,
-        M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2, M_aa_t_3, M_aa_t_4,
-        M_aa_t_5, M_aa_t_6,), (),
-    )
-
-
-def _M_after(c, s, t, f):
-    m_star, = c
-    (
-    h_star_in_base_x, h_star_in_base_y, h_star_in_base_z, J_star_t_8, J_star_t_9, J_star_t_10,
-        J_star_t_12, J_star_t_13, J_star_t_15,
-    ) = s
+    sums = [0.0] * 21
+    for leg, k in legs[0]:
+        (
+        J_1_xx, J_2_xx, J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz,
+            J_3_zz, Jc_2_zz, Kd_2_t, Kd_2_t_2, branch_1, branch_2, d_Gamma_2_t, d_Gamma_2_y,
+            d_c_yy, d_phi_3_t, h_3_x, h_3_y, h_3_z, inv_rrrs_platform_joint_offset_x, inv_size_t,
+            inv_size_t_2, rho2_2_t, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+            rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+            rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+            rrrs_base_point_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
+            rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
+            rrrs_platform_point_z, size, size_t_3,
+        ) = k
+        # (rrrs-K1) from the base point to the connection point
+        q_in_base_x = (
+        R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
+        )
+        q_in_base_y = (
+        R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
+        )
+        q_in_base_z = (
+        R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
+        )
+        S_x = q_in_base_x + t_x - rrrs_base_point_x
+        S_y = q_in_base_y + t_y - rrrs_base_point_y
+        S_z = q_in_base_z + t_z - rrrs_base_point_z
+        # (rrrs-K2) component along the reference direction
+        px_1 = S_x*rrrs_base_frame_xy + S_y*rrrs_base_frame_yy + S_z*rrrs_base_frame_zy
+        # (rrrs-K3) component across the reference direction
+        py_1 = S_x*rrrs_base_frame_xz + S_y*rrrs_base_frame_yz + S_z*rrrs_base_frame_zz
+        # (rrrs-K5) squared amplitude
+        rho2_1 = px_1*px_1 + py_1*py_1
+        # (rrrs-K7) root, with the sign of the branch
+        root_1 = branch_1*sqrt(rho2_1)
+        # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
+        xi_1_t = S_x*rrrs_base_frame_xx + S_y*rrrs_base_frame_yx + S_z*rrrs_base_frame_zx
+        # (rrrs-K12) from the origin of joint 2 to the connection point
+        x_2_z = xi_1_t - rrrs_joint2_offset_x
+        # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
+        Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
+        # (rrrs-K17) factor of the cosine in the equation of joint 2
+        Kc_2 = root_1*rrrs_joint3_offset_x
+        # (rrrs-K18) factor of the sine in the equation of joint 2
+        Ks_2 = rrrs_joint3_offset_x*x_2_z
+        # (rrrs-K19) squared amplitude
+        rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
+        # (rrrs-K20) discriminant
+        disc_2 = rho2_2 - Kd_2*Kd_2
+        # (rrrs-K21) root, with the sign of the branch
+        root_2 = branch_2*sqrt(disc_2)
+        # (rrrs-K27) from the origin of joint 3 to the connection point
+        x_3_x = Kd_2*inv_size_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
+        c_3 = inv_size_t_2*rrrs_platform_joint_offset_x*x_3_x
+        # (rrrs-K30) sine of the angle of joint 3 from its reference direction
+        s_3 = inv_size_t*inv_size_t_2*root_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        # (rrrs-V2) from joint 2 to the connection point, along the links
+        r_2_t = rrrs_platform_joint_offset_x*s_3
+        r_2_x = rrrs_joint3_offset_x + c_3*rrrs_platform_joint_offset_x
+        # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
+        inv_rho2_2 = 1.0/rho2_2
+        c_2 = inv_rho2_2*(Kc_2*Kd_2 + Ks_2*root_2)
+        # (rrrs-K23) sine of the angle of joint 2 from its reference direction
+        s_2 = inv_rho2_2*(Kc_2*root_2 - Kd_2*Ks_2)
+        # (rrrs-V4) velocity of the connection point per rate of joint 1
+        e_1_r2_x = c_2*s_3 - c_3*s_2
+        e_1_r2_y = -c_2*c_3 - s_2*s_3
+        # (rrrs-V3) from joint 1 to the connection point, along the links
+        r_1_r1_x = c_2*root_1 - s_2*xi_1_t
+        r_1_r1_y = -c_2*xi_1_t - root_1*s_2
+        # (rrrs-V4) velocity of the connection point per rate of joint 1
+        v_1_z = e_1_r2_x*(c_3*r_1_r1_y + r_1_r1_x*s_3) - e_1_r2_y*(c_3*r_1_r1_x - r_1_r1_y*s_3)
+        # (rrrs-V2) from joint 2 to the connection point, along the links
+        r_2_r0_x = c_3*r_2_x + r_2_t*s_3
+        r_2_r0_y = r_2_x*s_3 - c_3*r_2_t
+        # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
+        inv_rho2_1 = 1.0/rho2_1
+        c_1 = inv_rho2_1*py_1*root_1
+        # (rrrs-K9) sine of the angle of joint 1 from its reference direction
+        s_1 = inv_rho2_1*px_1*root_1
+        # (rrrs-V7) reciprocal vector 1
+        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*s_1 - c_1*rrrs_base_frame_xy
+        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*s_1 - c_1*rrrs_base_frame_yy
+        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*s_1 - c_1*rrrs_base_frame_zy
+        w_1_t = e_1_r2_x*s_1
+        w_1_t_2 = c_1*e_1_r2_x
+        axis_y_rrrs_axes3_in_base_x = (
+        e_1_r2_y*rrrs_base_frame_xx + rrrs_base_frame_xy*w_1_t + rrrs_base_frame_xz*w_1_t_2
+        )
+        axis_y_rrrs_axes3_in_base_y = (
+        e_1_r2_y*rrrs_base_frame_yx + rrrs_base_frame_yy*w_1_t + rrrs_base_frame_yz*w_1_t_2
+        )
+        axis_y_rrrs_axes3_in_base_z = (
+        e_1_r2_y*rrrs_base_frame_zx + rrrs_base_frame_zy*w_1_t + rrrs_base_frame_zz*w_1_t_2
+        )
+        axis_x_rrrs_axes3_x = (
+        axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
+            axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y
+        )
+        axis_x_rrrs_axes3_y = (
+        axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
+            axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z
+        )
+        axis_x_rrrs_axes3_z = (
+        axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
+            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
+        )
+        # (rrrs-G9) inertia tensor of link 3 about the connection point
+        J_3_t = J_3_xy*s_3
+        _x = J_3_t + J_3_xx*c_3
+        J_3_t_2 = J_3_xy*c_3
+        _x_2 = J_3_t_2 + J_3_yy*s_3
+        _x_3 = J_3_xz*c_3 + J_3_yz*s_3
+        _y = J_3_yz*c_3 - J_3_xz*s_3
+        # (rrrs-N18) inertia tensor of the links from 2 outwards about joint 2
+        Jc_2_xy = J_2_xy + _x_2*c_3 - _x*s_3
+        _y_2 = (
+        -c_2*(-Jc_2_xy*s_2 - c_2*(J_2_yy + c_3*(J_3_yy*c_3 - J_3_t) - s_3*(J_3_t_2 - J_3_xx*s_3)))
+            - s_2*(-Jc_2_xy*c_2 - s_2*(J_2_xx + _x*c_3 + _x_2*s_3))
+        )
+        # (rrrs-V7) reciprocal vector 1
+        inv_v_1_z = 1.0/v_1_z
+        # (rrrs-V8) reciprocal vector 2
+        inv_r_2_r0_y = 1.0/r_2_r0_y
+        # (rrrs-V9) reciprocal vector 3
+        w_3_t = inv_r_2_r0_y*inv_rrrs_platform_joint_offset_x*r_2_r0_x
+        # (rrrs-N50) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        d_Gamma_1_z = e_1_r2_x*h_3_y + inv_v_1_z*(J_1_xx + _y_2) - e_1_r2_y*h_3_x
+        # (rrrs-N41) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        d_Gamma_2_t_2 = d_Gamma_2_t*r_2_r0_x
+        d_Gamma_2_x = -h_3_y - inv_r_2_r0_y*(Jc_2_zz - d_Gamma_2_t_2)
+        # (rrrs-N32) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        d_Gamma_3_t = inv_v_1_z*(-_x_3*s_2 - _y*c_2)
+        d_Gamma_3_x = -h_3_y - inv_r_2_r0_y*(J_3_zz - d_Gamma_2_t_2)
+        # (rrrs-A25) coefficient of the acceleration in: angular acceleration of link 3
+        d_alpha_3_t = e_1_r2_x*inv_v_1_z
+        d_alpha_3_t_2 = e_1_r2_y*inv_v_1_z
+        # (rrrs-N56) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        d_c_xx = d_Gamma_2_x*inv_r_2_r0_y + h_3_y*(w_3_t - inv_r_2_r0_y) - d_Gamma_3_x*w_3_t
+        d_c_xy = d_phi_3_t + d_Gamma_2_y*inv_r_2_r0_y - d_Gamma_2_y*w_3_t
+        d_c_xz = (
+        inv_r_2_r0_y*inv_v_1_z*(-c_2*(J_2_yz + _y) - s_2*(J_2_xz + _x_3)) - d_Gamma_3_t*w_3_t -
+            d_alpha_3_t_2*h_3_z
+        )
+        d_c_yz = d_alpha_3_t*h_3_z - d_Gamma_3_t*inv_rrrs_platform_joint_offset_x
+        # (rrrs-N58) inertia of the leg at the connection point, without the mass gathered there
+        Q_t = d_c_xx - d_c_yy
+        Q_t_2 = 0.5*Q_t
+        Q_t_3 = d_c_xx + d_Gamma_1_z*inv_v_1_z + d_alpha_3_t*h_3_y - d_alpha_3_t_2*h_3_x
+        Q_t_4 = 0.5*Q_t_3
+        Q_t_5 = (
+        axis_x_rrrs_axes3_x*d_c_xy + axis_z_rrrs_axes3_in_base_x*d_c_yz -
+            Q_t_2*axis_y_rrrs_axes3_in_base_x
+        )
+        Q_t_6 = (
+        axis_x_rrrs_axes3_y*d_c_xy + axis_z_rrrs_axes3_in_base_y*d_c_yz -
+            Q_t_2*axis_y_rrrs_axes3_in_base_y
+        )
+        Q_t_7 = (
+        axis_x_rrrs_axes3_z*d_c_xy + axis_z_rrrs_axes3_in_base_z*d_c_yz -
+            Q_t_2*axis_y_rrrs_axes3_in_base_z
+        )
+        Q_t_8 = Q_t_4*axis_z_rrrs_axes3_in_base_x - axis_x_rrrs_axes3_x*d_c_xz
+        Q_t_9 = Q_t_4*axis_z_rrrs_axes3_in_base_y - axis_x_rrrs_axes3_y*d_c_xz
+        Q_t_10 = Q_t_4*axis_z_rrrs_axes3_in_base_z - axis_x_rrrs_axes3_z*d_c_xz
+        Q_t_11 = Q_t_5*axis_y_rrrs_axes3_in_base_x - Q_t_8*axis_z_rrrs_axes3_in_base_x
+        Q_t_12 = 2.0*Q_t_11 + d_c_xx
+        Q_t_13 = (
+        Q_t_5*axis_y_rrrs_axes3_in_base_y + Q_t_6*axis_y_rrrs_axes3_in_base_x -
+            Q_t_8*axis_z_rrrs_axes3_in_base_y - Q_t_9*axis_z_rrrs_axes3_in_base_x
+        )
+        Q_t_14 = (
+        Q_t_5*axis_y_rrrs_axes3_in_base_z + Q_t_7*axis_y_rrrs_axes3_in_base_x -
+            Q_t_10*axis_z_rrrs_axes3_in_base_x - Q_t_8*axis_z_rrrs_axes3_in_base_z
+        )
+        Q_t_15 = Q_t_6*axis_y_rrrs_axes3_in_base_y - Q_t_9*axis_z_rrrs_axes3_in_base_y
+        Q_t_16 = 2.0*Q_t_15 + d_c_xx
+        Q_t_17 = (
+        Q_t_6*axis_y_rrrs_axes3_in_base_z + Q_t_7*axis_y_rrrs_axes3_in_base_y -
+            Q_t_10*axis_z_rrrs_axes3_in_base_y - Q_t_9*axis_z_rrrs_axes3_in_base_z
+        )
+        Q_t_18 = Q_t_7*axis_y_rrrs_axes3_in_base_z - Q_t_10*axis_z_rrrs_axes3_in_base_z
+        Q_t_19 = 2.0*Q_t_18 + d_c_xx
+        # (M2) coupling block of M
+        M_ta_t = Q_t_13*q_in_base_z
+        M_ta_t_2 = Q_t_14*q_in_base_y
+        M_ta_t_3 = M_ta_t - M_ta_t_2
+        M_ta_t_4 = Q_t_12*q_in_base_z - Q_t_14*q_in_base_x
+        M_ta_t_5 = Q_t_12*q_in_base_y - Q_t_13*q_in_base_x
+        M_ta_t_6 = Q_t_16*q_in_base_z - Q_t_17*q_in_base_y
+        M_ta_t_7 = Q_t_17*q_in_base_x
+        M_ta_t_8 = M_ta_t - M_ta_t_7
+        M_ta_t_9 = Q_t_13*q_in_base_y - Q_t_16*q_in_base_x
+        M_ta_t_10 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y
+        M_ta_t_11 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x
+        M_ta_t_12 = M_ta_t_7 - M_ta_t_2
+        # (M3) rotational block of M
+        M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y
+        M_aa_t_2 = M_ta_t_8*q_in_base_z - M_ta_t_11*q_in_base_y
+        M_aa_t_3 = M_ta_t_12*q_in_base_y + M_ta_t_9*q_in_base_z
+        M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x
+        M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z
+        M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x
+        ok = (
+        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) >
+            _TOLERANCE * _TOLERANCE * rho2_2_t) & (disc_2 >= 0.0) & (abs(v_1_z) > _TOLERANCE *
+            size) & (abs(-r_2_r0_y) > _TOLERANCE * size))
+        )
+        sums = m.added(sums, leg, (
+        Q_t_12, Q_t_13, Q_t_14, Q_t_16, Q_t_17, Q_t_19, M_ta_t_3, M_ta_t_4, M_ta_t_5,
+            M_ta_t_6, M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2,
+            M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6,
+        ))
     (
     total_rrrs_xx, total_rrrs_xy, total_rrrs_xz, total_rrrs_yy, total_rrrs_yz, total_rrrs_zz,
         total_rrrs_xx_2, total_rrrs_xy_2, total_rrrs_xz_2, total_rrrs_yx, total_rrrs_yy_2,
         total_rrrs_yz_2, total_rrrs_zx, total_rrrs_zy, total_rrrs_zz_2, total_rrrs_xx_3,
         total_rrrs_xy_3, total_rrrs_xz_3, total_rrrs_yy_3, total_rrrs_yz_3, total_rrrs_zz_3,
-    ) = t
+    ) = sums
     # (M1) translational block of M
     M_tt_xx = m_star - total_rrrs_xx
     M_tt_yy = m_star - total_rrrs_yy
@@ -1808,22 +2226,53 @@ def _M_after(c, s, t, f):
     M_aa_yy = J_star_t_12 - total_rrrs_yy_3
     M_aa_yz = J_star_t_13 + total_rrrs_yz_3
     M_aa_zz = J_star_t_15 - total_rrrs_zz_3
-    ok = True
-    return (
-    ok, (M_tt_xx, -total_rrrs_xy, -total_rrrs_xy, -total_rrrs_xz, -total_rrrs_xz, M_tt_yy,
-        -total_rrrs_yz, -total_rrrs_yz, M_tt_zz, total_rrrs_xx_2, total_rrrs_xx_2, M_ta_xy,
-        M_ta_xy, M_ta_xz, M_ta_xz, M_ta_yx, M_ta_yx, -total_rrrs_yy_2, -total_rrrs_yy_2, M_ta_yz,
-        M_ta_yz, M_ta_zx, M_ta_zx, M_ta_zy, M_ta_zy, -total_rrrs_zz_2, -total_rrrs_zz_2, M_aa_xx,
-        M_aa_xy, M_aa_xy, M_aa_xz, M_aa_xz, M_aa_yy, M_aa_yz, M_aa_yz, M_aa_zz,),
-    )
+    out_M[0] = M_tt_xx
+    out_M[1] = -total_rrrs_xy
+    out_M[6] = -total_rrrs_xy
+    out_M[2] = -total_rrrs_xz
+    out_M[12] = -total_rrrs_xz
+    out_M[7] = M_tt_yy
+    out_M[8] = -total_rrrs_yz
+    out_M[13] = -total_rrrs_yz
+    out_M[14] = M_tt_zz
+    out_M[3] = total_rrrs_xx_2
+    out_M[18] = total_rrrs_xx_2
+    out_M[4] = M_ta_xy
+    out_M[24] = M_ta_xy
+    out_M[5] = M_ta_xz
+    out_M[30] = M_ta_xz
+    out_M[9] = M_ta_yx
+    out_M[19] = M_ta_yx
+    out_M[10] = -total_rrrs_yy_2
+    out_M[25] = -total_rrrs_yy_2
+    out_M[11] = M_ta_yz
+    out_M[31] = M_ta_yz
+    out_M[15] = M_ta_zx
+    out_M[20] = M_ta_zx
+    out_M[16] = M_ta_zy
+    out_M[26] = M_ta_zy
+    out_M[17] = -total_rrrs_zz_2
+    out_M[32] = -total_rrrs_zz_2
+    out_M[21] = M_aa_xx
+    out_M[22] = M_aa_xy
+    out_M[27] = M_aa_xy
+    out_M[23] = M_aa_xz
+    out_M[33] = M_aa_xz
+    out_M[28] = M_aa_yy
+    out_M[29] = M_aa_yz
+    out_M[34] = M_aa_yz
+    out_M[35] = M_aa_zz
+    return ok, (out_M,)
 
 
 # Z: 912 mul, 663 add, 12 div, 6 sqrt, 0 trig
-def _Z_before(c, X, V, f):
+def _run_Z(m, X, V):
+    sqrt = m.sqrt
+    shared, legs = m.constants("Z")
     (
     J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3,
         gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
-    ) = c
+    ) = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -1871,6 +2320,9 @@ def _Z_before(c, X, V, f):
     omega_x = V_3
     omega_y = V_4
     omega_z = V_5
+    ok = True
+    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    out_Z = m.zeros(6)
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -1898,321 +2350,316 @@ def _Z_before(c, X, V, f):
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
-    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    return (
-    ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
-        t_dot_z, omega_x, omega_y, omega_z, Z_p_x, Z_p_y, Z_p_z, Z_q_in_base_x, Z_q_in_base_y,
-        Z_q_in_base_z,), (),
-    )
-
-
-def _Z_rrrs(c, k, x, s, f):
-    sqrt = f.sqrt
+    sums = [0.0] * 6
+    for leg, k in legs[0]:
+        (
+        J_1_xx, J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, Kd_2_t, Kd_2_t_2, Sigma_2_xx,
+            Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2,
+            g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
+            inv_rrrs_platform_joint_offset_x, inv_size_t, inv_size_t_2, rho2_2_t,
+            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
+            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, size, size_t_3,
+        ) = k
+        # (rrrs-K1) from the base point to the connection point
+        q_in_base_x = (
+        R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
+        )
+        q_in_base_y = (
+        R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
+        )
+        q_in_base_z = (
+        R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
+        )
+        S_x = q_in_base_x + t_x - rrrs_base_point_x
+        S_y = q_in_base_y + t_y - rrrs_base_point_y
+        S_z = q_in_base_z + t_z - rrrs_base_point_z
+        # (rrrs-K2) component along the reference direction
+        px_1 = S_x*rrrs_base_frame_xy + S_y*rrrs_base_frame_yy + S_z*rrrs_base_frame_zy
+        # (rrrs-K3) component across the reference direction
+        py_1 = S_x*rrrs_base_frame_xz + S_y*rrrs_base_frame_yz + S_z*rrrs_base_frame_zz
+        # (rrrs-K5) squared amplitude
+        rho2_1 = px_1*px_1 + py_1*py_1
+        # (rrrs-K7) root, with the sign of the branch
+        root_1 = branch_1*sqrt(rho2_1)
+        # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
+        xi_1_t = S_x*rrrs_base_frame_xx + S_y*rrrs_base_frame_yx + S_z*rrrs_base_frame_zx
+        # (rrrs-K12) from the origin of joint 2 to the connection point
+        x_2_z = xi_1_t - rrrs_joint2_offset_x
+        # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
+        Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
+        # (rrrs-K17) factor of the cosine in the equation of joint 2
+        Kc_2 = root_1*rrrs_joint3_offset_x
+        # (rrrs-K18) factor of the sine in the equation of joint 2
+        Ks_2 = rrrs_joint3_offset_x*x_2_z
+        # (rrrs-K19) squared amplitude
+        rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
+        # (rrrs-K20) discriminant
+        disc_2 = rho2_2 - Kd_2*Kd_2
+        # (rrrs-K21) root, with the sign of the branch
+        root_2 = branch_2*sqrt(disc_2)
+        # (rrrs-K27) from the origin of joint 3 to the connection point
+        x_3_x = Kd_2*inv_size_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
+        c_3 = inv_size_t_2*rrrs_platform_joint_offset_x*x_3_x
+        # (rrrs-K30) sine of the angle of joint 3 from its reference direction
+        s_3 = inv_size_t*inv_size_t_2*root_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        # (rrrs-V2) from joint 2 to the connection point, along the links
+        r_2_t = rrrs_platform_joint_offset_x*s_3
+        r_2_x = rrrs_joint3_offset_x + c_3*rrrs_platform_joint_offset_x
+        # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
+        inv_rho2_2 = 1.0/rho2_2
+        c_2 = inv_rho2_2*(Kc_2*Kd_2 + Ks_2*root_2)
+        # (rrrs-K23) sine of the angle of joint 2 from its reference direction
+        s_2 = inv_rho2_2*(Kc_2*root_2 - Kd_2*Ks_2)
+        # (rrrs-V4) velocity of the connection point per rate of joint 1
+        e_1_r2_x = c_2*s_3 - c_3*s_2
+        e_1_r2_y = -c_2*c_3 - s_2*s_3
+        # (rrrs-V3) from joint 1 to the connection point, along the links
+        r_1_r1_x = c_2*root_1 - s_2*xi_1_t
+        r_1_r1_y = -c_2*xi_1_t - root_1*s_2
+        # (rrrs-V4) velocity of the connection point per rate of joint 1
+        v_1_z = e_1_r2_x*(c_3*r_1_r1_y + r_1_r1_x*s_3) - e_1_r2_y*(c_3*r_1_r1_x - r_1_r1_y*s_3)
+        # (rrrs-V2) from joint 2 to the connection point, along the links
+        r_2_r0_x = c_3*r_2_x + r_2_t*s_3
+        r_2_r0_y = r_2_x*s_3 - c_3*r_2_t
+        # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
+        inv_rho2_1 = 1.0/rho2_1
+        c_1 = inv_rho2_1*py_1*root_1
+        # (rrrs-K9) sine of the angle of joint 1 from its reference direction
+        s_1 = inv_rho2_1*px_1*root_1
+        # (rrrs-V7) reciprocal vector 1
+        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*s_1 - c_1*rrrs_base_frame_xy
+        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*s_1 - c_1*rrrs_base_frame_yy
+        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*s_1 - c_1*rrrs_base_frame_zy
+        w_1_t = e_1_r2_x*s_1
+        w_1_t_2 = c_1*e_1_r2_x
+        axis_y_rrrs_axes3_in_base_x = (
+        e_1_r2_y*rrrs_base_frame_xx + rrrs_base_frame_xy*w_1_t + rrrs_base_frame_xz*w_1_t_2
+        )
+        axis_y_rrrs_axes3_in_base_y = (
+        e_1_r2_y*rrrs_base_frame_yx + rrrs_base_frame_yy*w_1_t + rrrs_base_frame_yz*w_1_t_2
+        )
+        axis_y_rrrs_axes3_in_base_z = (
+        e_1_r2_y*rrrs_base_frame_zx + rrrs_base_frame_zy*w_1_t + rrrs_base_frame_zz*w_1_t_2
+        )
+        axis_x_rrrs_axes3_x = (
+        axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
+            axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y
+        )
+        axis_x_rrrs_axes3_y = (
+        axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
+            axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z
+        )
+        axis_x_rrrs_axes3_z = (
+        axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
+            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
+        )
+        inv_v_1_z = 1.0/v_1_z
+        # (rrrs-V8) reciprocal vector 2
+        inv_r_2_r0_y = 1.0/r_2_r0_y
+        # (rrrs-V1) velocity of the connection point
+        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
+        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
+        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
+        S_dot_x = S_dot_t + t_dot_x
+        S_dot_y = S_dot_t_2 + t_dot_y
+        S_dot_z = S_dot_t_3 + t_dot_z
+        # (rrrs-V10) rate of joint 1
+        qd_2 = (
+        inv_r_2_r0_y*(S_dot_x*axis_x_rrrs_axes3_x + S_dot_y*axis_x_rrrs_axes3_y +
+            S_dot_z*axis_x_rrrs_axes3_z)
+        )
+        qd_3 = (
+        inv_rrrs_platform_joint_offset_x*(S_dot_x*axis_y_rrrs_axes3_in_base_x +
+            S_dot_y*axis_y_rrrs_axes3_in_base_y + S_dot_z*axis_y_rrrs_axes3_in_base_z +
+            qd_2*r_2_r0_x)
+        )
+        qd_1 = (
+        inv_v_1_z*(S_dot_x*axis_z_rrrs_axes3_in_base_x + S_dot_y*axis_z_rrrs_axes3_in_base_y +
+            S_dot_z*axis_z_rrrs_axes3_in_base_z)
+        )
+        # (rrrs-V13) angular velocity of link 1
+        omega_1_t = qd_1*s_2
+        omega_1_t_2 = c_2*qd_1
+        # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
+        zeta_2_x = omega_1_t_2*qd_2
+        zeta_2_y = omega_1_t*qd_2
+        # (rrrs-V15) angular velocity of link 2
+        omega_2_r0_x = omega_1_t_2*s_3 - c_3*omega_1_t
+        omega_2_r0_y = -c_3*omega_1_t_2 - omega_1_t*s_3
+        # (rrrs-A5) angular acceleration of link 3 from the turning of axis 3
+        zeta_3_y = omega_2_r0_x*qd_3
+        # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
+        zeta_2_r0_y = s_3*zeta_2_x - c_3*zeta_2_y
+        # (rrrs-A6) angular acceleration of link 3 at zero joint accelerations
+        beta_3_y = zeta_2_r0_y - zeta_3_y
+        # (rrrs-V17) angular velocity of link 3
+        omega_3_z = qd_3 - qd_2
+        # (rrrs-V16) centripetal tensor of link 2
+        W_2_t = omega_1_t*omega_1_t
+        W_2_t_2 = omega_1_t_2*omega_1_t_2
+        W_2_t_3 = qd_2*qd_2
+        W_2_xy = omega_1_t*omega_1_t_2
+        # (rrrs-V18) centripetal tensor of link 3
+        W_3_t = omega_2_r0_x*omega_2_r0_x
+        W_3_t_2 = omega_2_r0_y*omega_2_r0_y
+        W_3_t_3 = omega_3_z*omega_3_z
+        W_3_xy = omega_2_r0_x*omega_2_r0_y
+        W_3_xz = omega_2_r0_x*omega_3_z
+        W_3_yz = omega_2_r0_y*omega_3_z
+        # (rrrs-A7) acceleration of the connection point at zero joint accelerations
+        bias_t = rrrs_joint2_offset_x*s_2
+        bias_t_2 = c_2*rrrs_joint2_offset_x
+        bias_t_3 = (
+        omega_2_r0_x*(-bias_t*s_3 - bias_t_2*c_3) - omega_2_r0_y*(bias_t_2*s_3 - bias_t*c_3)
+        )
+        bias_t_4 = c_3*rrrs_joint3_offset_x
+        bias_t_5 = rrrs_joint3_offset_x*s_3
+        bias_t_6 = bias_t_5*qd_2
+        bias_t_7 = bias_t_4*qd_2
+        bias_t_8 = bias_t_5*omega_2_r0_x - bias_t_4*omega_2_r0_y
+        bias_t_9 = omega_3_z*rrrs_platform_joint_offset_x
+        bias_t_10 = omega_2_r0_y*rrrs_platform_joint_offset_x
+        bias_x = (
+        bias_t_3*omega_2_r0_y + bias_t_8*omega_2_r0_y - bias_t_10*omega_2_r0_y - bias_t_7*qd_2 -
+            bias_t_9*omega_3_z
+        )
+        bias_y = (
+        bias_t_10*omega_2_r0_x - bias_t_3*omega_2_r0_x - bias_t_6*qd_2 - bias_t_8*omega_2_r0_x
+        )
+        bias_z = (
+        bias_t_5*(c_3*zeta_2_x + s_3*zeta_2_y) + bias_t_9*omega_2_r0_x -
+            beta_3_y*rrrs_platform_joint_offset_x - bias_t_4*zeta_2_r0_y - bias_t_6*omega_2_r0_y -
+            bias_t_7*omega_2_r0_x
+        )
+        # (rrrs-A1) centripetal acceleration of the connection point
+        u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z
+        u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x
+        u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y
+        u_1_tip_x = (
+        axis_x_rrrs_axes3_x*u_1_x + axis_x_rrrs_axes3_y*u_1_y + axis_x_rrrs_axes3_z*u_1_z
+        )
+        u_1_tip_y = (
+        axis_y_rrrs_axes3_in_base_x*u_1_x + axis_y_rrrs_axes3_in_base_y*u_1_y +
+            axis_y_rrrs_axes3_in_base_z*u_1_z
+        )
+        u_1_tip_z = (
+        axis_z_rrrs_axes3_in_base_x*u_1_x + axis_z_rrrs_axes3_in_base_y*u_1_y +
+            axis_z_rrrs_axes3_in_base_z*u_1_z
+        )
+        # (rrrs-A9) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        rel_o_x = u_1_tip_x - bias_x
+        rel_o_y = u_1_tip_y - bias_y
+        rel_o_z = u_1_tip_z - bias_z
+        # (rrrs-A11) remainder without the acceleration in: acceleration of joint 1
+        qdd_2_o = inv_r_2_r0_y*rel_o_x
+        qdd_1_o = inv_v_1_z*rel_o_z
+        # (rrrs-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
+        g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
+        g_r3_x = -c_2*g_r1_y - g_r0_z*s_2
+        g_r3_y = g_r1_y*s_2 - c_2*g_r0_z
+        # (rrrs-A17) remainder without the acceleration in: angular acceleration of link 1
+        alpha_1_o_t = qdd_1_o*s_2
+        alpha_1_o_t_2 = c_2*qdd_1_o
+        # (rrrs-A21) remainder without the acceleration in: angular acceleration of link 2
+        alpha_2_o_x = zeta_2_x - alpha_1_o_t
+        alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y
+        # (rrrs-A23) remainder of the acceleration tensor of link 2
+        B_2_o_xy = W_2_xy + qdd_2_o
+        B_2_o_yx = W_2_xy - qdd_2_o
+        B_2_o_zx = zeta_2_y - alpha_2_o_y
+        B_2_o_zy = alpha_2_o_x + zeta_2_x
+        # (rrrs-N37) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        mu_2_o_x = (
+        B_2_o_yx*J_2_xz + B_2_o_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) + g_r3_y*h_2_z -
+            B_2_o_zx*J_2_xy - Sigma_2_zz*alpha_1_o_t - g_r1_x*h_2_y
+        )
+        mu_2_o_y = (
+        B_2_o_zy*J_2_xy + g_r1_x*h_2_x - B_2_o_xy*J_2_yz - B_2_o_zx*Sigma_2_xx - J_2_xz*(W_2_t -
+            W_2_t_3) - Sigma_2_zz*alpha_1_o_t_2 - g_r3_x*h_2_z
+        )
+        mu_2_o_z = (
+        B_2_o_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + g_r3_x*h_2_y - B_2_o_xy*Sigma_2_yy -
+            J_2_xz*alpha_1_o_t - J_2_yz*alpha_1_o_t_2 - g_r3_y*h_2_x
+        )
+        # (rrrs-N10) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        acc_3_o_x = u_1_tip_x + g_r3_y*s_3 - c_3*g_r3_x
+        acc_3_o_y = u_1_tip_y - c_3*g_r3_y - g_r3_x*s_3
+        acc_3_o_z = u_1_tip_z - g_r1_x
+        # (rrrs-A26) remainder without the acceleration in: angular acceleration of link 3
+        alpha_3_o_x = alpha_2_o_x*c_3 + omega_2_r0_y*qd_3 - alpha_2_o_y*s_3
+        alpha_3_o_y = alpha_2_o_x*s_3 + alpha_2_o_y*c_3 - zeta_3_y
+        alpha_3_o_z = inv_rrrs_platform_joint_offset_x*(rel_o_y + qdd_2_o*r_2_r0_x) - qdd_2_o
+        # (rrrs-A28) remainder of the acceleration tensor of link 3
+        B_3_o_xy = W_3_xy - alpha_3_o_z
+        B_3_o_xz = W_3_xz + alpha_3_o_y
+        B_3_o_yx = W_3_xy + alpha_3_o_z
+        B_3_o_yz = W_3_yz - alpha_3_o_x
+        B_3_o_zx = W_3_xz - alpha_3_o_y
+        B_3_o_zy = W_3_yz + alpha_3_o_x
+        # (rrrs-N30) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        mu_3_o_x = (
+        B_3_o_yx*J_3_xz + B_3_o_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) + acc_3_o_z*h_3_y -
+            B_3_o_yz*Sigma_3_zz - B_3_o_zx*J_3_xy - acc_3_o_y*h_3_z
+        )
+        mu_3_o_y = (
+        B_3_o_xz*Sigma_3_zz + B_3_o_zy*J_3_xy + acc_3_o_x*h_3_z - B_3_o_xy*J_3_yz -
+            B_3_o_zx*Sigma_3_xx - J_3_xz*(W_3_t - W_3_t_3) - acc_3_o_z*h_3_x
+        )
+        mu_3_o_z = (
+        B_3_o_xz*J_3_yz + B_3_o_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + acc_3_o_y*h_3_x -
+            B_3_o_xy*Sigma_3_yy - B_3_o_yz*J_3_xz - acc_3_o_x*h_3_y
+        )
+        # (rrrs-N39) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        N_2_o_x = mu_2_o_x + c_3*mu_3_o_x + mu_3_o_y*s_3
+        N_2_o_y = mu_2_o_y + c_3*mu_3_o_y - mu_3_o_x*s_3
+        N_2_o_z = mu_2_o_z + mu_3_o_z
+        # (rrrs-N46) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        mu_1_o_z = J_1_xx*qdd_1_o - g_r1_x*h_1_y - g_r1_y*h_1_z
+        # (rrrs-N48) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        N_1_o_z = mu_1_o_z - N_2_o_x*s_2 - N_2_o_y*c_2
+        # (rrrs-N54) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        G_o_t = inv_rrrs_platform_joint_offset_x*mu_3_o_z
+        # (rrrs-N57) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        c_o_x = (
+        h_3_x*(W_3_t_2 + W_3_t_3) - B_3_o_xy*h_3_y - B_3_o_xz*h_3_z - inv_r_2_r0_y*(G_o_t*r_2_r0_x
+            - N_2_o_z)
+        )
+        c_o_y = h_3_y*(W_3_t + W_3_t_3) - G_o_t - B_3_o_yx*h_3_x - B_3_o_yz*h_3_z
+        c_o_z = h_3_z*(W_3_t + W_3_t_2) - B_3_o_zx*h_3_x - B_3_o_zy*h_3_y - N_1_o_z*inv_v_1_z
+        # (rrrs-N59) velocity and gravity terms of the leg force
+        U_in_base_x = (
+        -axis_x_rrrs_axes3_x*c_o_x - axis_y_rrrs_axes3_in_base_x*c_o_y -
+            axis_z_rrrs_axes3_in_base_x*c_o_z
+        )
+        U_in_base_y = (
+        -axis_x_rrrs_axes3_y*c_o_x - axis_y_rrrs_axes3_in_base_y*c_o_y -
+            axis_z_rrrs_axes3_in_base_y*c_o_z
+        )
+        U_in_base_z = (
+        -axis_x_rrrs_axes3_z*c_o_x - axis_y_rrrs_axes3_in_base_z*c_o_y -
+            axis_z_rrrs_axes3_in_base_z*c_o_z
+        )
+        # (M7) rotational part of Z
+        Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z
+        Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
+        Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
+        ok = (
+        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) >
+            _TOLERANCE * _TOLERANCE * rho2_2_t) & (disc_2 >= 0.0) & (abs(v_1_z) > _TOLERANCE *
+            size) & (abs(-r_2_r0_y) > _TOLERANCE * size))
+        )
+        sums = m.added(sums, leg, (
+        U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,
+        ))
     (
-    J_1_xx, J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, Kd_2_t, Kd_2_t_2, Sigma_2_xx,
-        Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2, g_r0_x,
-        g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
-        inv_rrrs_platform_joint_offset_x, inv_size_t, inv_size_t_2, rho2_2_t, rrrs_base_frame_xx,
-        rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-        rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
-        rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x,
-        rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-        rrrs_platform_point_y, rrrs_platform_point_z, size, size_t_3,
-    ) = k
-    (
-    t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
-        t_dot_z, omega_x, omega_y, omega_z,
-    ) = s
-    # (rrrs-K1) from the base point to the connection point
-    q_in_base_x = (
-    R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
-    )
-    q_in_base_y = (
-    R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
-    )
-    q_in_base_z = (
-    R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
-    )
-    S_x = q_in_base_x + t_x - rrrs_base_point_x
-    S_y = q_in_base_y + t_y - rrrs_base_point_y
-    S_z = q_in_base_z + t_z - rrrs_base_point_z
-    # (rrrs-K2) component along the reference direction
-    px_1 = S_x*rrrs_base_frame_xy + S_y*rrrs_base_frame_yy + S_z*rrrs_base_frame_zy
-    # (rrrs-K3) component across the reference direction
-    py_1 = S_x*rrrs_base_frame_xz + S_y*rrrs_base_frame_yz + S_z*rrrs_base_frame_zz
-    # (rrrs-K5) squared amplitude
-    rho2_1 = px_1*px_1 + py_1*py_1
-    # (rrrs-K7) root, with the sign of the branch
-    root_1 = branch_1*sqrt(rho2_1)
-    # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
-    xi_1_t = S_x*rrrs_base_frame_xx + S_y*rrrs_base_frame_yx + S_z*rrrs_base_frame_zx
-    # (rrrs-K12) from the origin of joint 2 to the connection point
-    x_2_z = xi_1_t - rrrs_joint2_offset_x
-    # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-    Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
-    Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
-    # (rrrs-K17) factor of the cosine in the equation of joint 2
-    Kc_2 = root_1*rrrs_joint3_offset_x
-    # (rrrs-K18) factor of the sine in the equation of joint 2
-    Ks_2 = rrrs_joint3_offset_x*x_2_z
-    # (rrrs-K19) squared amplitude
-    rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
-    # (rrrs-K20) discriminant
-    disc_2 = rho2_2 - Kd_2*Kd_2
-    # (rrrs-K21) root, with the sign of the branch
-    root_2 = branch_2*sqrt(disc_2)
-    # (rrrs-K27) from the origin of joint 3 to the connection point
-    x_3_x = Kd_2*inv_size_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
-    # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-    c_3 = inv_size_t_2*rrrs_platform_joint_offset_x*x_3_x
-    # (rrrs-K30) sine of the angle of joint 3 from its reference direction
-    s_3 = inv_size_t*inv_size_t_2*root_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
-    # (rrrs-V2) from joint 2 to the connection point, along the links
-    r_2_t = rrrs_platform_joint_offset_x*s_3
-    r_2_x = rrrs_joint3_offset_x + c_3*rrrs_platform_joint_offset_x
-    # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
-    inv_rho2_2 = 1.0/rho2_2
-    c_2 = inv_rho2_2*(Kc_2*Kd_2 + Ks_2*root_2)
-    # (rrrs-K23) sine of the angle of joint 2 from its reference direction
-    s_2 = inv_rho2_2*(Kc_2*root_2 - Kd_2*Ks_2)
-    # (rrrs-V4) velocity of the connection point per rate of joint 1
-    e_1_r2_x = c_2*s_3 - c_3*s_2
-    e_1_r2_y = -c_2*c_3 - s_2*s_3
-    # (rrrs-V3) from joint 1 to the connection point, along the links
-    r_1_r1_x = c_2*root_1 - s_2*xi_1_t
-    r_1_r1_y = -c_2*xi_1_t - root_1*s_2
-    # (rrrs-V4) velocity of the connection point per rate of joint 1
-    v_1_z = e_1_r2_x*(c_3*r_1_r1_y + r_1_r1_x*s_3) - e_1_r2_y*(c_3*r_1_r1_x - r_1_r1_y*s_3)
-    # (rrrs-V2) from joint 2 to the connection point, along the links
-    r_2_r0_x = c_3*r_2_x + r_2_t*s_3
-    r_2_r0_y = r_2_x*s_3 - c_3*r_2_t
-    # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
-    inv_rho2_1 = 1.0/rho2_1
-    c_1 = inv_rho2_1*py_1*root_1
-    # (rrrs-K9) sine of the angle of joint 1 from its reference direction
-    s_1 = inv_rho2_1*px_1*root_1
-    # (rrrs-V7) reciprocal vector 1
-    axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*s_1 - c_1*rrrs_base_frame_xy
-    axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*s_1 - c_1*rrrs_base_frame_yy
-    axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*s_1 - c_1*rrrs_base_frame_zy
-    w_1_t = e_1_r2_x*s_1
-    w_1_t_2 = c_1*e_1_r2_x
-    axis_y_rrrs_axes3_in_base_x = (
-    e_1_r2_y*rrrs_base_frame_xx + rrrs_base_frame_xy*w_1_t + rrrs_base_frame_xz*w_1_t_2
-    )
-    axis_y_rrrs_axes3_in_base_y = (
-    e_1_r2_y*rrrs_base_frame_yx + rrrs_base_frame_yy*w_1_t + rrrs_base_frame_yz*w_1_t_2
-    )
-    axis_y_rrrs_axes3_in_base_z = (
-    e_1_r2_y*rrrs_base_frame_zx + rrrs_base_frame_zy*w_1_t + rrrs_base_frame_zz*w_1_t_2
-    )
-    axis_x_rrrs_axes3_x = (
-    axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
-        axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y
-    )
-    axis_x_rrrs_axes3_y = (
-    axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
-        axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z
-    )
-    axis_x_rrrs_axes3_z = (
-    axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
-        axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
-    )
-    inv_v_1_z = 1.0/v_1_z
-    # (rrrs-V8) reciprocal vector 2
-    inv_r_2_r0_y = 1.0/r_2_r0_y
-    # (rrrs-V1) velocity of the connection point
-    S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-    S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-    S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-    S_dot_x = S_dot_t + t_dot_x
-    S_dot_y = S_dot_t_2 + t_dot_y
-    S_dot_z = S_dot_t_3 + t_dot_z
-    # (rrrs-V10) rate of joint 1
-    qd_2 = (
-    inv_r_2_r0_y*(S_dot_x*axis_x_rrrs_axes3_x + S_dot_y*axis_x_rrrs_axes3_y +
-        S_dot_z*axis_x_rrrs_axes3_z)
-    )
-    qd_3 = (
-    inv_rrrs_platform_joint_offset_x*(S_dot_x*axis_y_rrrs_axes3_in_base_x +
-        S_dot_y*axis_y_rrrs_axes3_in_base_y + S_dot_z*axis_y_rrrs_axes3_in_base_z + qd_2*r_2_r0_x)
-    )
-    qd_1 = (
-    inv_v_1_z*(S_dot_x*axis_z_rrrs_axes3_in_base_x + S_dot_y*axis_z_rrrs_axes3_in_base_y +
-        S_dot_z*axis_z_rrrs_axes3_in_base_z)
-    )
-    # (rrrs-V13) angular velocity of link 1
-    omega_1_t = qd_1*s_2
-    omega_1_t_2 = c_2*qd_1
-    # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_x = omega_1_t_2*qd_2
-    zeta_2_y = omega_1_t*qd_2
-    # (rrrs-V15) angular velocity of link 2
-    omega_2_r0_x = omega_1_t_2*s_3 - c_3*omega_1_t
-    omega_2_r0_y = -c_3*omega_1_t_2 - omega_1_t*s_3
-    # (rrrs-A5) angular acceleration of link 3 from the turning of axis 3
-    zeta_3_y = omega_2_r0_x*qd_3
-    # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_r0_y = s_3*zeta_2_x - c_3*zeta_2_y
-    # (rrrs-A6) angular acceleration of link 3 at zero joint accelerations
-    beta_3_y = zeta_2_r0_y - zeta_3_y
-    # (rrrs-V17) angular velocity of link 3
-    omega_3_z = qd_3 - qd_2
-    # (rrrs-V16) centripetal tensor of link 2
-    W_2_t = omega_1_t*omega_1_t
-    W_2_t_2 = omega_1_t_2*omega_1_t_2
-    W_2_t_3 = qd_2*qd_2
-    W_2_xy = omega_1_t*omega_1_t_2
-    # (rrrs-V18) centripetal tensor of link 3
-    W_3_t = omega_2_r0_x*omega_2_r0_x
-    W_3_t_2 = omega_2_r0_y*omega_2_r0_y
-    W_3_t_3 = omega_3_z*omega_3_z
-    W_3_xy = omega_2_r0_x*omega_2_r0_y
-    W_3_xz = omega_2_r0_x*omega_3_z
-    W_3_yz = omega_2_r0_y*omega_3_z
-    # (rrrs-A7) acceleration of the connection point at zero joint accelerations
-    bias_t = rrrs_joint2_offset_x*s_2
-    bias_t_2 = c_2*rrrs_joint2_offset_x
-    bias_t_3 = (
-    omega_2_r0_x*(-bias_t*s_3 - bias_t_2*c_3) - omega_2_r0_y*(bias_t_2*s_3 - bias_t*c_3)
-    )
-    bias_t_4 = c_3*rrrs_joint3_offset_x
-    bias_t_5 = rrrs_joint3_offset_x*s_3
-    bias_t_6 = bias_t_5*qd_2
-    bias_t_7 = bias_t_4*qd_2
-    bias_t_8 = bias_t_5*omega_2_r0_x - bias_t_4*omega_2_r0_y
-    bias_t_9 = omega_3_z*rrrs_platform_joint_offset_x
-    bias_t_10 = omega_2_r0_y*rrrs_platform_joint_offset_x
-    bias_x = (
-    bias_t_3*omega_2_r0_y + bias_t_8*omega_2_r0_y - bias_t_10*omega_2_r0_y - bias_t_7*qd_2 -
-        bias_t_9*omega_3_z
-    )
-    bias_y = (
-    bias_t_10*omega_2_r0_x - bias_t_3*omega_2_r0_x - bias_t_6*qd_2 - bias_t_8*omega_2_r0_x
-    )
-    bias_z = (
-    bias_t_5*(c_3*zeta_2_x + s_3*zeta_2_y) + bias_t_9*omega_2_r0_x -
-        beta_3_y*rrrs_platform_joint_offset_x - bias_t_4*zeta_2_r0_y - bias_t_6*omega_2_r0_y -
-        bias_t_7*omega_2_r0_x
-    )
-    # (rrrs-A1) centripetal acceleration of the connection point
-    u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z
-    u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x
-    u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y
-    u_1_tip_x = axis_x_rrrs_axes3_x*u_1_x + axis_x_rrrs_axes3_y*u_1_y + axis_x_rrrs_axes3_z*u_1_z
-    u_1_tip_y = (
-    axis_y_rrrs_axes3_in_base_x*u_1_x + axis_y_rrrs_axes3_in_base_y*u_1_y +
-        axis_y_rrrs_axes3_in_base_z*u_1_z
-    )
-    u_1_tip_z = (
-    axis_z_rrrs_axes3_in_base_x*u_1_x + axis_z_rrrs_axes3_in_base_y*u_1_y +
-        axis_z_rrrs_axes3_in_base_z*u_1_z
-    )
-    # (rrrs-A9) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-    rel_o_x = u_1_tip_x - bias_x
-    rel_o_y = u_1_tip_y - bias_y
-    rel_o_z = u_1_tip_z - bias_z
-    # (rrrs-A11) remainder without the acceleration in: acceleration of joint 1
-    qdd_2_o = inv_r_2_r0_y*rel_o_x
-    qdd_1_o = inv_v_1_z*rel_o_z
-    # (rrrs-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-    g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
-    g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
-    g_r3_x = -c_2*g_r1_y - g_r0_z*s_2
-    g_r3_y = g_r1_y*s_2 - c_2*g_r0_z
-    # (rrrs-A17) remainder without the acceleration in: angular acceleration of link 1
-    alpha_1_o_t = qdd_1_o*s_2
-    alpha_1_o_t_2 = c_2*qdd_1_o
-    # (rrrs-A21) remainder without the acceleration in: angular acceleration of link 2
-    alpha_2_o_x = zeta_2_x - alpha_1_o_t
-    alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y
-    # (rrrs-A23) remainder of the acceleration tensor of link 2
-    B_2_o_xy = W_2_xy + qdd_2_o
-    B_2_o_yx = W_2_xy - qdd_2_o
-    B_2_o_zx = zeta_2_y - alpha_2_o_y
-    B_2_o_zy = alpha_2_o_x + zeta_2_x
-    # (rrrs-N37) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-    mu_2_o_x = (
-    B_2_o_yx*J_2_xz + B_2_o_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) + g_r3_y*h_2_z -
-        B_2_o_zx*J_2_xy - Sigma_2_zz*alpha_1_o_t - g_r1_x*h_2_y
-    )
-    mu_2_o_y = (
-    B_2_o_zy*J_2_xy + g_r1_x*h_2_x - B_2_o_xy*J_2_yz - B_2_o_zx*Sigma_2_xx - J_2_xz*(W_2_t -
-        W_2_t_3) - Sigma_2_zz*alpha_1_o_t_2 - g_r3_x*h_2_z
-    )
-    mu_2_o_z = (
-    B_2_o_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + g_r3_x*h_2_y - B_2_o_xy*Sigma_2_yy -
-        J_2_xz*alpha_1_o_t - J_2_yz*alpha_1_o_t_2 - g_r3_y*h_2_x
-    )
-    # (rrrs-N10) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-    acc_3_o_x = u_1_tip_x + g_r3_y*s_3 - c_3*g_r3_x
-    acc_3_o_y = u_1_tip_y - c_3*g_r3_y - g_r3_x*s_3
-    acc_3_o_z = u_1_tip_z - g_r1_x
-    # (rrrs-A26) remainder without the acceleration in: angular acceleration of link 3
-    alpha_3_o_x = alpha_2_o_x*c_3 + omega_2_r0_y*qd_3 - alpha_2_o_y*s_3
-    alpha_3_o_y = alpha_2_o_x*s_3 + alpha_2_o_y*c_3 - zeta_3_y
-    alpha_3_o_z = inv_rrrs_platform_joint_offset_x*(rel_o_y + qdd_2_o*r_2_r0_x) - qdd_2_o
-    # (rrrs-A28) remainder of the acceleration tensor of link 3
-    B_3_o_xy = W_3_xy - alpha_3_o_z
-    B_3_o_xz = W_3_xz + alpha_3_o_y
-    B_3_o_yx = W_3_xy + alpha_3_o_z
-    B_3_o_yz = W_3_yz - alpha_3_o_x
-    B_3_o_zx = W_3_xz - alpha_3_o_y
-    B_3_o_zy = W_3_yz + alpha_3_o_x
-    # (rrrs-N30) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-    mu_3_o_x = (
-    B_3_o_yx*J_3_xz + B_3_o_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) + acc_3_o_z*h_3_y -
-        B_3_o_yz*Sigma_3_zz - B_3_o_zx*J_3_xy - acc_3_o_y*h_3_z
-    )
-    mu_3_o_y = (
-    B_3_o_xz*Sigma_3_zz + B_3_o_zy*J_3_xy + acc_3_o_x*h_3_z - B_3_o_xy*J_3_yz -
-        B_3_o_zx*Sigma_3_xx - J_3_xz*(W_3_t - W_3_t_3) - acc_3_o_z*h_3_x
-    )
-    mu_3_o_z = (
-    B_3_o_xz*J_3_yz + B_3_o_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + acc_3_o_y*h_3_x -
-        B_3_o_xy*Sigma_3_yy - B_3_o_yz*J_3_xz - acc_3_o_x*h_3_y
-    )
-    # (rrrs-N39) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-    N_2_o_x = mu_2_o_x + c_3*mu_3_o_x + mu_3_o_y*s_3
-    N_2_o_y = mu_2_o_y + c_3*mu_3_o_y - mu_3_o_x*s_3
-    N_2_o_z = mu_2_o_z + mu_3_o_z
-    # (rrrs-N46) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-    mu_1_o_z = J_1_xx*qdd_1_o - g_r1_x*h_1_y - g_r1_y*h_1_z
-    # (rrrs-N48) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-    N_1_o_z = mu_1_o_z - N_2_o_x*s_2 - N_2_o_y*c_2
-    # (rrrs-N54) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-    G_o_t = inv_rrrs_platform_joint_offset_x*mu_3_o_z
-    # (rrrs-N57) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    c_o_x = (
-    h_3_x*(W_3_t_2 + W_3_t_3) - B_3_o_xy*h_3_y - B_3_o_xz*h_3_z - inv_r_2_r0_y*(G_o_t*r_2_r0_x -
-        N_2_o_z)
-    )
-    c_o_y = h_3_y*(W_3_t + W_3_t_3) - G_o_t - B_3_o_yx*h_3_x - B_3_o_yz*h_3_z
-    c_o_z = h_3_z*(W_3_t + W_3_t_2) - B_3_o_zx*h_3_x - B_3_o_zy*h_3_y - N_1_o_z*inv_v_1_z
-    # (rrrs-N59) velocity and gravity terms of the leg force
-    U_in_base_x = (
-    -axis_x_rrrs_axes3_x*c_o_x - axis_y_rrrs_axes3_in_base_x*c_o_y -
-        axis_z_rrrs_axes3_in_base_x*c_o_z
-    )
-    U_in_base_y = (
-    -axis_x_rrrs_axes3_y*c_o_x - axis_y_rrrs_axes3_in_base_y*c_o_y -
-        axis_z_rrrs_axes3_in_base_y*c_o_z
-    )
-    U_in_base_z = (
-    -axis_x_rrrs_axes3_z*c_o_x - axis_y_rrrs_axes3_in_base_z*c_o_y -
-        axis_z_rrrs_axes3_in_base_z*c_o_z
-    )
-    # (M7) rotational part of Z
-    Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z
-    Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
-    Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * rho2_2_t) & (disc_2 >= 0.0) & (abs(v_1_z) > _TOLERANCE * size) & (abs(-r_2_r0_y) > _TOLERANCE * size)
-    return (ok, (U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,), (),)
-
-
-def _Z_after(c, s, t, f):
-    Z_p_x, Z_p_y, Z_p_z, Z_q_in_base_x, Z_q_in_base_y, Z_q_in_base_z = s
-    total_rrrs_x, total_rrrs_y, total_rrrs_z, total_rrrs_x_2, total_rrrs_y_2, total_rrrs_z_2 = t
+    total_rrrs_x, total_rrrs_y, total_rrrs_z, total_rrrs_x_2, total_rrrs_y_2, total_rrrs_z_2,
+    ) = sums
     # (M5) translational part of Z
     Z_t_x = Z_p_x + total_rrrs_x
     Z_t_y = Z_p_y + total_rrrs_y
@@ -2221,12 +2668,19 @@ def _Z_after(c, s, t, f):
     Z_a_x = Z_q_in_base_x + total_rrrs_x_2
     Z_a_y = Z_q_in_base_y + total_rrrs_y_2
     Z_a_z = Z_q_in_base_z + total_rrrs_z_2
-    ok = True
-    return (ok, (Z_t_x, Z_t_y, Z_t_z, Z_a_x, Z_a_y, Z_a_z,),)
+    out_Z[0] = Z_t_x
+    out_Z[1] = Z_t_y
+    out_Z[2] = Z_t_z
+    out_Z[3] = Z_a_x
+    out_Z[4] = Z_a_y
+    out_Z[5] = Z_a_z
+    return ok, (out_Z,)
 
 
 # H: 321 mul, 165 add, 12 div, 6 sqrt, 0 trig
-def _H_before(c, X, f):
+def _run_H(m, X):
+    sqrt = m.sqrt
+    shared, legs = m.constants("H")
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -2261,143 +2715,155 @@ def _H_before(c, X, f):
     R_zx = quaternion_xz - quaternion_wy
     R_zy = quaternion_wx + quaternion_yz
     R_zz = 1.0 - quaternion_xx - quaternion_yy
-    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    return (ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz,), (),)
-
-
-def _H_rrrs(c, k, x, s, f):
-    sqrt = f.sqrt
-    (
-    Kd_2_t, Kd_2_t_2, branch_1, branch_2, inv_size_t, inv_size_t_2, rho2_2_t, rrrs_base_frame_xx,
-        rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-        rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
-        rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x,
-        rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-        rrrs_platform_point_y, rrrs_platform_point_z, size, size_t_3,
-    ) = k
-    t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
-    # (rrrs-K1) from the base point to the connection point
-    q_in_base_x = (
-    R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
-    )
-    q_in_base_y = (
-    R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
-    )
-    q_in_base_z = (
-    R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
-    )
-    S_x = q_in_base_x + t_x - rrrs_base_point_x
-    S_y = q_in_base_y + t_y - rrrs_base_point_y
-    S_z = q_in_base_z + t_z - rrrs_base_point_z
-    # (rrrs-K2) component along the reference direction
-    px_1 = S_x*rrrs_base_frame_xy + S_y*rrrs_base_frame_yy + S_z*rrrs_base_frame_zy
-    # (rrrs-K3) component across the reference direction
-    py_1 = S_x*rrrs_base_frame_xz + S_y*rrrs_base_frame_yz + S_z*rrrs_base_frame_zz
-    # (rrrs-K5) squared amplitude
-    rho2_1 = px_1*px_1 + py_1*py_1
-    # (rrrs-K7) root, with the sign of the branch
-    root_1 = branch_1*sqrt(rho2_1)
-    # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
-    xi_1_t = S_x*rrrs_base_frame_xx + S_y*rrrs_base_frame_yx + S_z*rrrs_base_frame_zx
-    # (rrrs-K12) from the origin of joint 2 to the connection point
-    x_2_z = xi_1_t - rrrs_joint2_offset_x
-    # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-    Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
-    Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
-    # (rrrs-K17) factor of the cosine in the equation of joint 2
-    Kc_2 = root_1*rrrs_joint3_offset_x
-    # (rrrs-K18) factor of the sine in the equation of joint 2
-    Ks_2 = rrrs_joint3_offset_x*x_2_z
-    # (rrrs-K19) squared amplitude
-    rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
-    # (rrrs-K20) discriminant
-    disc_2 = rho2_2 - Kd_2*Kd_2
-    # (rrrs-K21) root, with the sign of the branch
-    root_2 = branch_2*sqrt(disc_2)
-    # (rrrs-K27) from the origin of joint 3 to the connection point
-    x_3_x = Kd_2*inv_size_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
-    # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-    c_3 = inv_size_t_2*rrrs_platform_joint_offset_x*x_3_x
-    # (rrrs-K30) sine of the angle of joint 3 from its reference direction
-    s_3 = inv_size_t*inv_size_t_2*root_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
-    # (rrrs-V2) from joint 2 to the connection point, along the links
-    r_2_x = rrrs_joint3_offset_x + c_3*rrrs_platform_joint_offset_x
-    # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
-    inv_rho2_2 = 1.0/rho2_2
-    c_2 = inv_rho2_2*(Kc_2*Kd_2 + Ks_2*root_2)
-    # (rrrs-K23) sine of the angle of joint 2 from its reference direction
-    s_2 = inv_rho2_2*(Kc_2*root_2 - Kd_2*Ks_2)
-    # (rrrs-V4) velocity of the connection point per rate of joint 1
-    e_1_r2_x = c_2*s_3 - c_3*s_2
-    e_1_r2_y = -c_2*c_3 - s_2*s_3
-    # (rrrs-V3) from joint 1 to the connection point, along the links
-    r_1_r1_x = c_2*root_1 - s_2*xi_1_t
-    r_1_r1_y = -c_2*xi_1_t - root_1*s_2
-    # (rrrs-V4) velocity of the connection point per rate of joint 1
-    v_1_z = e_1_r2_x*(c_3*r_1_r1_y + r_1_r1_x*s_3) - e_1_r2_y*(c_3*r_1_r1_x - r_1_r1_y*s_3)
-    # (rrrs-V2) from joint 2 to the connection point, along the links
-    r_2_r0_y = r_2_x*s_3 - c_3*rrrs_platform_joint_offset_x*s_3
-    # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
-    inv_rho2_1 = 1.0/rho2_1
-    c_1 = inv_rho2_1*py_1*root_1
-    # (rrrs-K9) sine of the angle of joint 1 from its reference direction
-    s_1 = inv_rho2_1*px_1*root_1
-    # (rrrs-V7) reciprocal vector 1
-    axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*s_1 - c_1*rrrs_base_frame_xy
-    axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*s_1 - c_1*rrrs_base_frame_yy
-    axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*s_1 - c_1*rrrs_base_frame_zy
-    w_1_t = e_1_r2_x*s_1
-    w_1_t_2 = c_1*e_1_r2_x
-    axis_y_rrrs_axes3_in_base_x = (
-    e_1_r2_y*rrrs_base_frame_xx + rrrs_base_frame_xy*w_1_t + rrrs_base_frame_xz*w_1_t_2
-    )
-    axis_y_rrrs_axes3_in_base_y = (
-    e_1_r2_y*rrrs_base_frame_yx + rrrs_base_frame_yy*w_1_t + rrrs_base_frame_yz*w_1_t_2
-    )
-    axis_y_rrrs_axes3_in_base_z = (
-    e_1_r2_y*rrrs_base_frame_zx + rrrs_base_frame_zy*w_1_t + rrrs_base_frame_zz*w_1_t_2
-    )
-    inv_v_1_z = 1.0/v_1_z
-    # (rrrs-V8) reciprocal vector 2
-    inv_r_2_r0_y = 1.0/r_2_r0_y
-    # (rrrs-V7) reciprocal vector 1
-    w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_v_1_z
-    w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_v_1_z
-    w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_v_1_z
-    # (M8) moment of the column's unit force about the platform origin
-    H_a_1_x = q_in_base_y*w_1_t_5 - q_in_base_z*w_1_t_4
-    H_a_1_y = q_in_base_z*w_1_t_3 - q_in_base_x*w_1_t_5
-    H_a_1_z = q_in_base_x*w_1_t_4 - q_in_base_y*w_1_t_3
-    # (rrrs-V8) reciprocal vector 2
-    w_2_t = (
-    inv_r_2_r0_y*(axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
-        axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y)
-    )
-    w_2_t_2 = (
-    inv_r_2_r0_y*(axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
-        axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z)
-    )
-    w_2_t_3 = (
-    inv_r_2_r0_y*(axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
-        axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x)
-    )
-    # (M9) moment of the column's unit force about the platform origin
-    H_a_2_x = q_in_base_z*w_2_t_2 - q_in_base_y*w_2_t_3
-    H_a_2_y = q_in_base_x*w_2_t_3 - q_in_base_z*w_2_t
-    H_a_2_z = q_in_base_y*w_2_t - q_in_base_x*w_2_t_2
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * rho2_2_t) & (disc_2 >= 0.0) & (abs(v_1_z) > _TOLERANCE * size) & (abs(-r_2_r0_y) > _TOLERANCE * size)
-    return (
-    ok, (), (w_1_t_3, w_1_t_4, w_1_t_5, H_a_1_x, H_a_1_y, H_a_1_z, -w_2_t, -w_2_t_2, -w_2_t_3,
-        H_a_2_x, H_a_2_y, H_a_2_z,),
-    )
+    ok = True
+    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    out_H = m.zeros(36)
+    for leg, k in legs[0]:
+        (
+        Kd_2_t, Kd_2_t_2, branch_1, branch_2, inv_size_t, inv_size_t_2, rho2_2_t,
+            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
+            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, size, size_t_3,
+        ) = k
+        # (rrrs-K1) from the base point to the connection point
+        q_in_base_x = (
+        R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
+        )
+        q_in_base_y = (
+        R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
+        )
+        q_in_base_z = (
+        R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
+        )
+        S_x = q_in_base_x + t_x - rrrs_base_point_x
+        S_y = q_in_base_y + t_y - rrrs_base_point_y
+        S_z = q_in_base_z + t_z - rrrs_base_point_z
+        # (rrrs-K2) component along the reference direction
+        px_1 = S_x*rrrs_base_frame_xy + S_y*rrrs_base_frame_yy + S_z*rrrs_base_frame_zy
+        # (rrrs-K3) component across the reference direction
+        py_1 = S_x*rrrs_base_frame_xz + S_y*rrrs_base_frame_yz + S_z*rrrs_base_frame_zz
+        # (rrrs-K5) squared amplitude
+        rho2_1 = px_1*px_1 + py_1*py_1
+        # (rrrs-K7) root, with the sign of the branch
+        root_1 = branch_1*sqrt(rho2_1)
+        # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
+        xi_1_t = S_x*rrrs_base_frame_xx + S_y*rrrs_base_frame_yx + S_z*rrrs_base_frame_zx
+        # (rrrs-K12) from the origin of joint 2 to the connection point
+        x_2_z = xi_1_t - rrrs_joint2_offset_x
+        # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
+        Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
+        # (rrrs-K17) factor of the cosine in the equation of joint 2
+        Kc_2 = root_1*rrrs_joint3_offset_x
+        # (rrrs-K18) factor of the sine in the equation of joint 2
+        Ks_2 = rrrs_joint3_offset_x*x_2_z
+        # (rrrs-K19) squared amplitude
+        rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
+        # (rrrs-K20) discriminant
+        disc_2 = rho2_2 - Kd_2*Kd_2
+        # (rrrs-K21) root, with the sign of the branch
+        root_2 = branch_2*sqrt(disc_2)
+        # (rrrs-K27) from the origin of joint 3 to the connection point
+        x_3_x = Kd_2*inv_size_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
+        c_3 = inv_size_t_2*rrrs_platform_joint_offset_x*x_3_x
+        # (rrrs-K30) sine of the angle of joint 3 from its reference direction
+        s_3 = inv_size_t*inv_size_t_2*root_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        # (rrrs-V2) from joint 2 to the connection point, along the links
+        r_2_x = rrrs_joint3_offset_x + c_3*rrrs_platform_joint_offset_x
+        # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
+        inv_rho2_2 = 1.0/rho2_2
+        c_2 = inv_rho2_2*(Kc_2*Kd_2 + Ks_2*root_2)
+        # (rrrs-K23) sine of the angle of joint 2 from its reference direction
+        s_2 = inv_rho2_2*(Kc_2*root_2 - Kd_2*Ks_2)
+        # (rrrs-V4) velocity of the connection point per rate of joint 1
+        e_1_r2_x = c_2*s_3 - c_3*s_2
+        e_1_r2_y = -c_2*c_3 - s_2*s_3
+        # (rrrs-V3) from joint 1 to the connection point, along the links
+        r_1_r1_x = c_2*root_1 - s_2*xi_1_t
+        r_1_r1_y = -c_2*xi_1_t - root_1*s_2
+        # (rrrs-V4) velocity of the connection point per rate of joint 1
+        v_1_z = e_1_r2_x*(c_3*r_1_r1_y + r_1_r1_x*s_3) - e_1_r2_y*(c_3*r_1_r1_x - r_1_r1_y*s_3)
+        # (rrrs-V2) from joint 2 to the connection point, along the links
+        r_2_r0_y = r_2_x*s_3 - c_3*rrrs_platform_joint_offset_x*s_3
+        # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
+        inv_rho2_1 = 1.0/rho2_1
+        c_1 = inv_rho2_1*py_1*root_1
+        # (rrrs-K9) sine of the angle of joint 1 from its reference direction
+        s_1 = inv_rho2_1*px_1*root_1
+        # (rrrs-V7) reciprocal vector 1
+        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*s_1 - c_1*rrrs_base_frame_xy
+        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*s_1 - c_1*rrrs_base_frame_yy
+        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*s_1 - c_1*rrrs_base_frame_zy
+        w_1_t = e_1_r2_x*s_1
+        w_1_t_2 = c_1*e_1_r2_x
+        axis_y_rrrs_axes3_in_base_x = (
+        e_1_r2_y*rrrs_base_frame_xx + rrrs_base_frame_xy*w_1_t + rrrs_base_frame_xz*w_1_t_2
+        )
+        axis_y_rrrs_axes3_in_base_y = (
+        e_1_r2_y*rrrs_base_frame_yx + rrrs_base_frame_yy*w_1_t + rrrs_base_frame_yz*w_1_t_2
+        )
+        axis_y_rrrs_axes3_in_base_z = (
+        e_1_r2_y*rrrs_base_frame_zx + rrrs_base_frame_zy*w_1_t + rrrs_base_frame_zz*w_1_t_2
+        )
+        inv_v_1_z = 1.0/v_1_z
+        # (rrrs-V8) reciprocal vector 2
+        inv_r_2_r0_y = 1.0/r_2_r0_y
+        # (rrrs-V7) reciprocal vector 1
+        w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_v_1_z
+        w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_v_1_z
+        w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_v_1_z
+        # (M8) moment of the column's unit force about the platform origin
+        H_a_1_x = q_in_base_y*w_1_t_5 - q_in_base_z*w_1_t_4
+        H_a_1_y = q_in_base_z*w_1_t_3 - q_in_base_x*w_1_t_5
+        H_a_1_z = q_in_base_x*w_1_t_4 - q_in_base_y*w_1_t_3
+        # (rrrs-V8) reciprocal vector 2
+        w_2_t = (
+        inv_r_2_r0_y*(axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
+            axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y)
+        )
+        w_2_t_2 = (
+        inv_r_2_r0_y*(axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
+            axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z)
+        )
+        w_2_t_3 = (
+        inv_r_2_r0_y*(axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
+            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x)
+        )
+        # (M9) moment of the column's unit force about the platform origin
+        H_a_2_x = q_in_base_z*w_2_t_2 - q_in_base_y*w_2_t_3
+        H_a_2_y = q_in_base_x*w_2_t_3 - q_in_base_z*w_2_t
+        H_a_2_z = q_in_base_y*w_2_t - q_in_base_x*w_2_t_2
+        ok = (
+        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) >
+            _TOLERANCE * _TOLERANCE * rho2_2_t) & (disc_2 >= 0.0) & (abs(v_1_z) > _TOLERANCE *
+            size) & (abs(-r_2_r0_y) > _TOLERANCE * size))
+        )
+        out_H[[0, 2, 4][leg]] = w_1_t_3
+        out_H[[6, 8, 10][leg]] = w_1_t_4
+        out_H[[12, 14, 16][leg]] = w_1_t_5
+        out_H[[18, 20, 22][leg]] = H_a_1_x
+        out_H[[24, 26, 28][leg]] = H_a_1_y
+        out_H[[30, 32, 34][leg]] = H_a_1_z
+        out_H[[1, 3, 5][leg]] = -w_2_t
+        out_H[[7, 9, 11][leg]] = -w_2_t_2
+        out_H[[13, 15, 17][leg]] = -w_2_t_3
+        out_H[[19, 21, 23][leg]] = H_a_2_x
+        out_H[[25, 27, 29][leg]] = H_a_2_y
+        out_H[[31, 33, 35][leg]] = H_a_2_z
+    return ok, (out_H,)
 
 
 # required: 1023 mul, 747 add, 12 div, 6 sqrt, 0 trig
-def _required_before(c, X, V, A, f):
+def _run_required(m, X, V, A):
+    sqrt = m.sqrt
+    shared, legs = m.constants("required")
     (
     J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
         gravity_z, h_star_x, h_star_y, h_star_z, m_star,
-    ) = c
+    ) = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -2458,6 +2924,10 @@ def _required_before(c, X, V, A, f):
     alpha_x = A_3
     alpha_y = A_4
     alpha_z = A_5
+    ok = True
+    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    out_required = m.zeros(6)
+    out_H = m.zeros(36)
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -2516,353 +2986,356 @@ def _required_before(c, X, V, A, f):
     mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z
     mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z
     mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z
-    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    return (
-    ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
-        t_dot_z, omega_x, omega_y, omega_z, t_ddot_x, t_ddot_y, t_ddot_z, alpha_x, alpha_y,
-        alpha_z, f_p_x, f_p_y, f_p_z, mu_p_in_base_x, mu_p_in_base_y, mu_p_in_base_z,), (),
-    )
-
-
-def _required_rrrs(c, k, x, s, f):
-    sqrt = f.sqrt
-    gravity_x, gravity_y, gravity_z = c
+    sums = [0.0] * 6
+    for leg, k in legs[0]:
+        (
+        J_1_xx, J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, Kd_2_t, Kd_2_t_2, Sigma_2_xx,
+            Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2,
+            g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
+            inv_rrrs_platform_joint_offset_x, inv_size_t, inv_size_t_2, rho2_2_t,
+            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
+            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, size, size_t_3,
+        ) = k
+        # (rrrs-K1) from the base point to the connection point
+        q_in_base_x = (
+        R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
+        )
+        q_in_base_y = (
+        R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
+        )
+        q_in_base_z = (
+        R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
+        )
+        S_x = q_in_base_x + t_x - rrrs_base_point_x
+        S_y = q_in_base_y + t_y - rrrs_base_point_y
+        S_z = q_in_base_z + t_z - rrrs_base_point_z
+        # (rrrs-K2) component along the reference direction
+        px_1 = S_x*rrrs_base_frame_xy + S_y*rrrs_base_frame_yy + S_z*rrrs_base_frame_zy
+        # (rrrs-K3) component across the reference direction
+        py_1 = S_x*rrrs_base_frame_xz + S_y*rrrs_base_frame_yz + S_z*rrrs_base_frame_zz
+        # (rrrs-K5) squared amplitude
+        rho2_1 = px_1*px_1 + py_1*py_1
+        # (rrrs-K7) root, with the sign of the branch
+        root_1 = branch_1*sqrt(rho2_1)
+        # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
+        xi_1_t = S_x*rrrs_base_frame_xx + S_y*rrrs_base_frame_yx + S_z*rrrs_base_frame_zx
+        # (rrrs-K12) from the origin of joint 2 to the connection point
+        x_2_z = xi_1_t - rrrs_joint2_offset_x
+        # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
+        Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
+        # (rrrs-K17) factor of the cosine in the equation of joint 2
+        Kc_2 = root_1*rrrs_joint3_offset_x
+        # (rrrs-K18) factor of the sine in the equation of joint 2
+        Ks_2 = rrrs_joint3_offset_x*x_2_z
+        # (rrrs-K19) squared amplitude
+        rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
+        # (rrrs-K20) discriminant
+        disc_2 = rho2_2 - Kd_2*Kd_2
+        # (rrrs-K21) root, with the sign of the branch
+        root_2 = branch_2*sqrt(disc_2)
+        # (rrrs-K27) from the origin of joint 3 to the connection point
+        x_3_x = Kd_2*inv_size_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
+        c_3 = inv_size_t_2*rrrs_platform_joint_offset_x*x_3_x
+        # (rrrs-K30) sine of the angle of joint 3 from its reference direction
+        s_3 = inv_size_t*inv_size_t_2*root_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        # (rrrs-V2) from joint 2 to the connection point, along the links
+        r_2_t = rrrs_platform_joint_offset_x*s_3
+        r_2_x = rrrs_joint3_offset_x + c_3*rrrs_platform_joint_offset_x
+        # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
+        inv_rho2_2 = 1.0/rho2_2
+        c_2 = inv_rho2_2*(Kc_2*Kd_2 + Ks_2*root_2)
+        # (rrrs-K23) sine of the angle of joint 2 from its reference direction
+        s_2 = inv_rho2_2*(Kc_2*root_2 - Kd_2*Ks_2)
+        # (rrrs-V4) velocity of the connection point per rate of joint 1
+        e_1_r2_x = c_2*s_3 - c_3*s_2
+        e_1_r2_y = -c_2*c_3 - s_2*s_3
+        # (rrrs-V3) from joint 1 to the connection point, along the links
+        r_1_r1_x = c_2*root_1 - s_2*xi_1_t
+        r_1_r1_y = -c_2*xi_1_t - root_1*s_2
+        # (rrrs-V4) velocity of the connection point per rate of joint 1
+        v_1_z = e_1_r2_x*(c_3*r_1_r1_y + r_1_r1_x*s_3) - e_1_r2_y*(c_3*r_1_r1_x - r_1_r1_y*s_3)
+        # (rrrs-V2) from joint 2 to the connection point, along the links
+        r_2_r0_x = c_3*r_2_x + r_2_t*s_3
+        r_2_r0_y = r_2_x*s_3 - c_3*r_2_t
+        # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
+        inv_rho2_1 = 1.0/rho2_1
+        c_1 = inv_rho2_1*py_1*root_1
+        # (rrrs-K9) sine of the angle of joint 1 from its reference direction
+        s_1 = inv_rho2_1*px_1*root_1
+        # (rrrs-V7) reciprocal vector 1
+        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*s_1 - c_1*rrrs_base_frame_xy
+        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*s_1 - c_1*rrrs_base_frame_yy
+        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*s_1 - c_1*rrrs_base_frame_zy
+        w_1_t = e_1_r2_x*s_1
+        w_1_t_2 = c_1*e_1_r2_x
+        axis_y_rrrs_axes3_in_base_x = (
+        e_1_r2_y*rrrs_base_frame_xx + rrrs_base_frame_xy*w_1_t + rrrs_base_frame_xz*w_1_t_2
+        )
+        axis_y_rrrs_axes3_in_base_y = (
+        e_1_r2_y*rrrs_base_frame_yx + rrrs_base_frame_yy*w_1_t + rrrs_base_frame_yz*w_1_t_2
+        )
+        axis_y_rrrs_axes3_in_base_z = (
+        e_1_r2_y*rrrs_base_frame_zx + rrrs_base_frame_zy*w_1_t + rrrs_base_frame_zz*w_1_t_2
+        )
+        axis_x_rrrs_axes3_x = (
+        axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
+            axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y
+        )
+        axis_x_rrrs_axes3_y = (
+        axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
+            axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z
+        )
+        axis_x_rrrs_axes3_z = (
+        axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
+            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
+        )
+        inv_v_1_z = 1.0/v_1_z
+        # (rrrs-V8) reciprocal vector 2
+        inv_r_2_r0_y = 1.0/r_2_r0_y
+        # (rrrs-V1) velocity of the connection point
+        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
+        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
+        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
+        S_dot_x = S_dot_t + t_dot_x
+        S_dot_y = S_dot_t_2 + t_dot_y
+        S_dot_z = S_dot_t_3 + t_dot_z
+        # (rrrs-V10) rate of joint 1
+        qd_2 = (
+        inv_r_2_r0_y*(S_dot_x*axis_x_rrrs_axes3_x + S_dot_y*axis_x_rrrs_axes3_y +
+            S_dot_z*axis_x_rrrs_axes3_z)
+        )
+        qd_3 = (
+        inv_rrrs_platform_joint_offset_x*(S_dot_x*axis_y_rrrs_axes3_in_base_x +
+            S_dot_y*axis_y_rrrs_axes3_in_base_y + S_dot_z*axis_y_rrrs_axes3_in_base_z +
+            qd_2*r_2_r0_x)
+        )
+        qd_1 = (
+        inv_v_1_z*(S_dot_x*axis_z_rrrs_axes3_in_base_x + S_dot_y*axis_z_rrrs_axes3_in_base_y +
+            S_dot_z*axis_z_rrrs_axes3_in_base_z)
+        )
+        # (rrrs-V13) angular velocity of link 1
+        omega_1_t = qd_1*s_2
+        omega_1_t_2 = c_2*qd_1
+        # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
+        zeta_2_x = omega_1_t_2*qd_2
+        zeta_2_y = omega_1_t*qd_2
+        # (rrrs-V15) angular velocity of link 2
+        omega_2_r0_x = omega_1_t_2*s_3 - c_3*omega_1_t
+        omega_2_r0_y = -c_3*omega_1_t_2 - omega_1_t*s_3
+        # (rrrs-A5) angular acceleration of link 3 from the turning of axis 3
+        zeta_3_y = omega_2_r0_x*qd_3
+        # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
+        zeta_2_r0_y = s_3*zeta_2_x - c_3*zeta_2_y
+        # (rrrs-A6) angular acceleration of link 3 at zero joint accelerations
+        beta_3_y = zeta_2_r0_y - zeta_3_y
+        # (rrrs-V17) angular velocity of link 3
+        omega_3_z = qd_3 - qd_2
+        # (rrrs-V16) centripetal tensor of link 2
+        W_2_t = omega_1_t*omega_1_t
+        W_2_t_2 = omega_1_t_2*omega_1_t_2
+        W_2_t_3 = qd_2*qd_2
+        W_2_xy = omega_1_t*omega_1_t_2
+        # (rrrs-V18) centripetal tensor of link 3
+        W_3_t = omega_2_r0_x*omega_2_r0_x
+        W_3_t_2 = omega_2_r0_y*omega_2_r0_y
+        W_3_t_3 = omega_3_z*omega_3_z
+        W_3_xy = omega_2_r0_x*omega_2_r0_y
+        W_3_xz = omega_2_r0_x*omega_3_z
+        W_3_yz = omega_2_r0_y*omega_3_z
+        # (rrrs-A7) acceleration of the connection point at zero joint accelerations
+        bias_t = rrrs_joint2_offset_x*s_2
+        bias_t_2 = c_2*rrrs_joint2_offset_x
+        bias_t_3 = (
+        omega_2_r0_x*(-bias_t*s_3 - bias_t_2*c_3) - omega_2_r0_y*(bias_t_2*s_3 - bias_t*c_3)
+        )
+        bias_t_4 = c_3*rrrs_joint3_offset_x
+        bias_t_5 = rrrs_joint3_offset_x*s_3
+        bias_t_6 = bias_t_5*qd_2
+        bias_t_7 = bias_t_4*qd_2
+        bias_t_8 = bias_t_5*omega_2_r0_x - bias_t_4*omega_2_r0_y
+        bias_t_9 = omega_3_z*rrrs_platform_joint_offset_x
+        bias_t_10 = omega_2_r0_y*rrrs_platform_joint_offset_x
+        bias_x = (
+        bias_t_3*omega_2_r0_y + bias_t_8*omega_2_r0_y - bias_t_10*omega_2_r0_y - bias_t_7*qd_2 -
+            bias_t_9*omega_3_z
+        )
+        bias_y = (
+        bias_t_10*omega_2_r0_x - bias_t_3*omega_2_r0_x - bias_t_6*qd_2 - bias_t_8*omega_2_r0_x
+        )
+        bias_z = (
+        bias_t_5*(c_3*zeta_2_x + s_3*zeta_2_y) + bias_t_9*omega_2_r0_x -
+            beta_3_y*rrrs_platform_joint_offset_x - bias_t_4*zeta_2_r0_y - bias_t_6*omega_2_r0_y -
+            bias_t_7*omega_2_r0_x
+        )
+        # (rrrs-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
+        g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
+        g_r3_x = -c_2*g_r1_y - g_r0_z*s_2
+        g_r3_y = g_r1_y*s_2 - c_2*g_r0_z
+        # (rrrs-V7) reciprocal vector 1
+        w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_v_1_z
+        w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_v_1_z
+        w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_v_1_z
+        # (M8) moment of the column's unit force about the platform origin
+        H_a_1_x = q_in_base_y*w_1_t_5 - q_in_base_z*w_1_t_4
+        H_a_1_y = q_in_base_z*w_1_t_3 - q_in_base_x*w_1_t_5
+        H_a_1_z = q_in_base_x*w_1_t_4 - q_in_base_y*w_1_t_3
+        # (rrrs-V8) reciprocal vector 2
+        w_2_t = axis_x_rrrs_axes3_x*inv_r_2_r0_y
+        w_2_t_2 = axis_x_rrrs_axes3_y*inv_r_2_r0_y
+        w_2_t_3 = axis_x_rrrs_axes3_z*inv_r_2_r0_y
+        # (M9) moment of the column's unit force about the platform origin
+        H_a_2_x = q_in_base_z*w_2_t_2 - q_in_base_y*w_2_t_3
+        H_a_2_y = q_in_base_x*w_2_t_3 - q_in_base_z*w_2_t
+        H_a_2_z = q_in_base_y*w_2_t - q_in_base_x*w_2_t_2
+        # (rrrs-A2) acceleration of the connection point without its centripetal part
+        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
+        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
+        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
+        # (rrrs-A3) acceleration of the connection point
+        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
+        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
+        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
+        S_ddot_tip_x = (
+        S_ddot_x*axis_x_rrrs_axes3_x + S_ddot_y*axis_x_rrrs_axes3_y + S_ddot_z*axis_x_rrrs_axes3_z
+        )
+        S_ddot_tip_y = (
+        S_ddot_x*axis_y_rrrs_axes3_in_base_x + S_ddot_y*axis_y_rrrs_axes3_in_base_y +
+            S_ddot_z*axis_y_rrrs_axes3_in_base_z
+        )
+        S_ddot_tip_z = (
+        S_ddot_x*axis_z_rrrs_axes3_in_base_x + S_ddot_y*axis_z_rrrs_axes3_in_base_y +
+            S_ddot_z*axis_z_rrrs_axes3_in_base_z
+        )
+        # (rrrs-A8) acceleration of the connection point left to the joint accelerations
+        rel_x = S_ddot_tip_x - bias_x
+        rel_y = S_ddot_tip_y - bias_y
+        rel_z = S_ddot_tip_z - bias_z
+        # (rrrs-A10) acceleration of joint 1
+        qdd_2 = inv_r_2_r0_y*rel_x
+        qdd_1 = inv_v_1_z*rel_z
+        # (rrrs-N9) acceleration of the reference point of link 3, less gravity
+        acc_3_x = (
+        S_ddot_tip_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
+            axis_x_rrrs_axes3_z*gravity_z
+        )
+        acc_3_y = (
+        S_ddot_tip_y - axis_y_rrrs_axes3_in_base_x*gravity_x -
+            axis_y_rrrs_axes3_in_base_y*gravity_y - axis_y_rrrs_axes3_in_base_z*gravity_z
+        )
+        acc_3_z = (
+        S_ddot_tip_z - axis_z_rrrs_axes3_in_base_x*gravity_x -
+            axis_z_rrrs_axes3_in_base_y*gravity_y - axis_z_rrrs_axes3_in_base_z*gravity_z
+        )
+        # (rrrs-A16) angular acceleration of link 1
+        alpha_1_t = qdd_1*s_2
+        alpha_1_t_2 = c_2*qdd_1
+        # (rrrs-A20) angular acceleration of link 2
+        alpha_2_x = zeta_2_x - alpha_1_t
+        alpha_2_y = -alpha_1_t_2 - zeta_2_y
+        # (rrrs-A22) acceleration tensor of link 2
+        B_2_xy = W_2_xy + qdd_2
+        B_2_yx = W_2_xy - qdd_2
+        B_2_zx = zeta_2_y - alpha_2_y
+        B_2_zy = alpha_2_x + zeta_2_x
+        # (rrrs-N36) inertia moment of the links that turn with link 2, about their reference points
+        mu_2_x = (
+        B_2_yx*J_2_xz + B_2_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) + g_r3_y*h_2_z -
+            B_2_zx*J_2_xy - Sigma_2_zz*alpha_1_t - g_r1_x*h_2_y
+        )
+        mu_2_y = (
+        B_2_zy*J_2_xy + g_r1_x*h_2_x - B_2_xy*J_2_yz - B_2_zx*Sigma_2_xx - J_2_xz*(W_2_t -
+            W_2_t_3) - Sigma_2_zz*alpha_1_t_2 - g_r3_x*h_2_z
+        )
+        mu_2_z = (
+        B_2_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + g_r3_x*h_2_y - B_2_xy*Sigma_2_yy -
+            J_2_xz*alpha_1_t - J_2_yz*alpha_1_t_2 - g_r3_y*h_2_x
+        )
+        # (rrrs-A24) angular acceleration of link 3
+        alpha_3_x = alpha_2_x*c_3 + omega_2_r0_y*qd_3 - alpha_2_y*s_3
+        alpha_3_y = alpha_2_x*s_3 + alpha_2_y*c_3 - zeta_3_y
+        alpha_3_z = inv_rrrs_platform_joint_offset_x*(rel_y + qdd_2*r_2_r0_x) - qdd_2
+        # (rrrs-A27) acceleration tensor of link 3
+        B_3_xy = W_3_xy - alpha_3_z
+        B_3_xz = W_3_xz + alpha_3_y
+        B_3_yx = W_3_xy + alpha_3_z
+        B_3_yz = W_3_yz - alpha_3_x
+        B_3_zx = W_3_xz - alpha_3_y
+        B_3_zy = W_3_yz + alpha_3_x
+        # (rrrs-N29) inertia moment of the links that turn with link 3, about their reference points
+        mu_3_x = (
+        B_3_yx*J_3_xz + B_3_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) + acc_3_z*h_3_y -
+            B_3_yz*Sigma_3_zz - B_3_zx*J_3_xy - acc_3_y*h_3_z
+        )
+        mu_3_y = (
+        B_3_xz*Sigma_3_zz + B_3_zy*J_3_xy + acc_3_x*h_3_z - B_3_xy*J_3_yz - B_3_zx*Sigma_3_xx -
+            J_3_xz*(W_3_t - W_3_t_3) - acc_3_z*h_3_x
+        )
+        mu_3_z = (
+        B_3_xz*J_3_yz + B_3_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + acc_3_y*h_3_x -
+            B_3_xy*Sigma_3_yy - B_3_yz*J_3_xz - acc_3_x*h_3_y
+        )
+        # (rrrs-N38) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        N_2_x = mu_2_x + c_3*mu_3_x + mu_3_y*s_3
+        N_2_y = mu_2_y + c_3*mu_3_y - mu_3_x*s_3
+        N_2_z = mu_2_z + mu_3_z
+        # (rrrs-N45) inertia moment of the links that turn with link 1, about their reference points
+        mu_1_z = J_1_xx*qdd_1 - g_r1_x*h_1_y - g_r1_y*h_1_z
+        # (rrrs-N47) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        N_1_z = mu_1_z - N_2_x*s_2 - N_2_y*c_2
+        # (rrrs-N52) force at the connection point that balances the leg's inertia and weight along all freedoms
+        G_t = inv_rrrs_platform_joint_offset_x*mu_3_z
+        # (rrrs-N55) leg force on the platform without actuation and without the mass at the connection point
+        c_x = (
+        h_3_x*(W_3_t_2 + W_3_t_3) - B_3_xy*h_3_y - B_3_xz*h_3_z - inv_r_2_r0_y*(G_t*r_2_r0_x -
+            N_2_z)
+        )
+        c_y = h_3_y*(W_3_t + W_3_t_3) - G_t - B_3_yx*h_3_x - B_3_yz*h_3_z
+        c_z = h_3_z*(W_3_t + W_3_t_2) - B_3_zx*h_3_x - B_3_zy*h_3_y - N_1_z*inv_v_1_z
+        c_in_base_x = (
+        axis_x_rrrs_axes3_x*c_x + axis_y_rrrs_axes3_in_base_x*c_y +
+            axis_z_rrrs_axes3_in_base_x*c_z
+        )
+        c_in_base_y = (
+        axis_x_rrrs_axes3_y*c_x + axis_y_rrrs_axes3_in_base_y*c_y +
+            axis_z_rrrs_axes3_in_base_y*c_z
+        )
+        c_in_base_z = (
+        axis_x_rrrs_axes3_z*c_x + axis_y_rrrs_axes3_in_base_z*c_y +
+            axis_z_rrrs_axes3_in_base_z*c_z
+        )
+        # (E5) moment that actuators and external wrench must give
+        R_a_t = c_in_base_z*q_in_base_y - c_in_base_y*q_in_base_z
+        R_a_t_2 = c_in_base_x*q_in_base_z - c_in_base_z*q_in_base_x
+        R_a_t_3 = c_in_base_y*q_in_base_x - c_in_base_x*q_in_base_y
+        ok = (
+        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) >
+            _TOLERANCE * _TOLERANCE * rho2_2_t) & (disc_2 >= 0.0) & (abs(v_1_z) > _TOLERANCE *
+            size) & (abs(-r_2_r0_y) > _TOLERANCE * size))
+        )
+        sums = m.added(sums, leg, (
+        c_in_base_x, c_in_base_y, c_in_base_z, R_a_t, R_a_t_2, R_a_t_3,
+        ))
+        out_H[[0, 2, 4][leg]] = w_1_t_3
+        out_H[[6, 8, 10][leg]] = w_1_t_4
+        out_H[[12, 14, 16][leg]] = w_1_t_5
+        out_H[[18, 20, 22][leg]] = H_a_1_x
+        out_H[[24, 26, 28][leg]] = H_a_1_y
+        out_H[[30, 32, 34][leg]] = H_a_1_z
+        out_H[[1, 3, 5][leg]] = -w_2_t
+        out_H[[7, 9, 11][leg]] = -w_2_t_2
+        out_H[[13, 15, 17][leg]] = -w_2_t_3
+        out_H[[19, 21, 23][leg]] = H_a_2_x
+        out_H[[25, 27, 29][leg]] = H_a_2_y
+        out_H[[31, 33, 35][leg]] = H_a_2_z
     (
-    J_1_xx, J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, Kd_2_t, Kd_2_t_2, Sigma_2_xx,
-        Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2, g_r0_x,
-        g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
-        inv_rrrs_platform_joint_offset_x, inv_size_t, inv_size_t_2, rho2_2_t, rrrs_base_frame_xx,
-        rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-        rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
-        rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x,
-        rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-        rrrs_platform_point_y, rrrs_platform_point_z, size, size_t_3,
-    ) = k
-    (
-    t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
-        t_dot_z, omega_x, omega_y, omega_z, t_ddot_x, t_ddot_y, t_ddot_z, alpha_x, alpha_y,
-        alpha_z,
-    ) = s
-    # (rrrs-K1) from the base point to the connection point
-    q_in_base_x = (
-    R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
-    )
-    q_in_base_y = (
-    R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
-    )
-    q_in_base_z = (
-    R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
-    )
-    S_x = q_in_base_x + t_x - rrrs_base_point_x
-    S_y = q_in_base_y + t_y - rrrs_base_point_y
-    S_z = q_in_base_z + t_z - rrrs_base_point_z
-    # (rrrs-K2) component along the reference direction
-    px_1 = S_x*rrrs_base_frame_xy + S_y*rrrs_base_frame_yy + S_z*rrrs_base_frame_zy
-    # (rrrs-K3) component across the reference direction
-    py_1 = S_x*rrrs_base_frame_xz + S_y*rrrs_base_frame_yz + S_z*rrrs_base_frame_zz
-    # (rrrs-K5) squared amplitude
-    rho2_1 = px_1*px_1 + py_1*py_1
-    # (rrrs-K7) root, with the sign of the branch
-    root_1 = branch_1*sqrt(rho2_1)
-    # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
-    xi_1_t = S_x*rrrs_base_frame_xx + S_y*rrrs_base_frame_yx + S_z*rrrs_base_frame_zx
-    # (rrrs-K12) from the origin of joint 2 to the connection point
-    x_2_z = xi_1_t - rrrs_joint2_offset_x
-    # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-    Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
-    Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
-    # (rrrs-K17) factor of the cosine in the equation of joint 2
-    Kc_2 = root_1*rrrs_joint3_offset_x
-    # (rrrs-K18) factor of the sine in the equation of joint 2
-    Ks_2 = rrrs_joint3_offset_x*x_2_z
-    # (rrrs-K19) squared amplitude
-    rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
-    # (rrrs-K20) discriminant
-    disc_2 = rho2_2 - Kd_2*Kd_2
-    # (rrrs-K21) root, with the sign of the branch
-    root_2 = branch_2*sqrt(disc_2)
-    # (rrrs-K27) from the origin of joint 3 to the connection point
-    x_3_x = Kd_2*inv_size_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
-    # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-    c_3 = inv_size_t_2*rrrs_platform_joint_offset_x*x_3_x
-    # (rrrs-K30) sine of the angle of joint 3 from its reference direction
-    s_3 = inv_size_t*inv_size_t_2*root_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
-    # (rrrs-V2) from joint 2 to the connection point, along the links
-    r_2_t = rrrs_platform_joint_offset_x*s_3
-    r_2_x = rrrs_joint3_offset_x + c_3*rrrs_platform_joint_offset_x
-    # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
-    inv_rho2_2 = 1.0/rho2_2
-    c_2 = inv_rho2_2*(Kc_2*Kd_2 + Ks_2*root_2)
-    # (rrrs-K23) sine of the angle of joint 2 from its reference direction
-    s_2 = inv_rho2_2*(Kc_2*root_2 - Kd_2*Ks_2)
-    # (rrrs-V4) velocity of the connection point per rate of joint 1
-    e_1_r2_x = c_2*s_3 - c_3*s_2
-    e_1_r2_y = -c_2*c_3 - s_2*s_3
-    # (rrrs-V3) from joint 1 to the connection point, along the links
-    r_1_r1_x = c_2*root_1 - s_2*xi_1_t
-    r_1_r1_y = -c_2*xi_1_t - root_1*s_2
-    # (rrrs-V4) velocity of the connection point per rate of joint 1
-    v_1_z = e_1_r2_x*(c_3*r_1_r1_y + r_1_r1_x*s_3) - e_1_r2_y*(c_3*r_1_r1_x - r_1_r1_y*s_3)
-    # (rrrs-V2) from joint 2 to the connection point, along the links
-    r_2_r0_x = c_3*r_2_x + r_2_t*s_3
-    r_2_r0_y = r_2_x*s_3 - c_3*r_2_t
-    # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
-    inv_rho2_1 = 1.0/rho2_1
-    c_1 = inv_rho2_1*py_1*root_1
-    # (rrrs-K9) sine of the angle of joint 1 from its reference direction
-    s_1 = inv_rho2_1*px_1*root_1
-    # (rrrs-V7) reciprocal vector 1
-    axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*s_1 - c_1*rrrs_base_frame_xy
-    axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*s_1 - c_1*rrrs_base_frame_yy
-    axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*s_1 - c_1*rrrs_base_frame_zy
-    w_1_t = e_1_r2_x*s_1
-    w_1_t_2 = c_1*e_1_r2_x
-    axis_y_rrrs_axes3_in_base_x = (
-    e_1_r2_y*rrrs_base_frame_xx + rrrs_base_frame_xy*w_1_t + rrrs_base_frame_xz*w_1_t_2
-    )
-    axis_y_rrrs_axes3_in_base_y = (
-    e_1_r2_y*rrrs_base_frame_yx + rrrs_base_frame_yy*w_1_t + rrrs_base_frame_yz*w_1_t_2
-    )
-    axis_y_rrrs_axes3_in_base_z = (
-    e_1_r2_y*rrrs_base_frame_zx + rrrs_base_frame_zy*w_1_t + rrrs_base_frame_zz*w_1_t_2
-    )
-    axis_x_rrrs_axes3_x = (
-    axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
-        axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y
-    )
-    axis_x_rrrs_axes3_y = (
-    axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
-        axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z
-    )
-    axis_x_rrrs_axes3_z = (
-    axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
-        axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
-    )
-    inv_v_1_z = 1.0/v_1_z
-    # (rrrs-V8) reciprocal vector 2
-    inv_r_2_r0_y = 1.0/r_2_r0_y
-    # (rrrs-V1) velocity of the connection point
-    S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-    S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-    S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-    S_dot_x = S_dot_t + t_dot_x
-    S_dot_y = S_dot_t_2 + t_dot_y
-    S_dot_z = S_dot_t_3 + t_dot_z
-    # (rrrs-V10) rate of joint 1
-    qd_2 = (
-    inv_r_2_r0_y*(S_dot_x*axis_x_rrrs_axes3_x + S_dot_y*axis_x_rrrs_axes3_y +
-        S_dot_z*axis_x_rrrs_axes3_z)
-    )
-    qd_3 = (
-    inv_rrrs_platform_joint_offset_x*(S_dot_x*axis_y_rrrs_axes3_in_base_x +
-        S_dot_y*axis_y_rrrs_axes3_in_base_y + S_dot_z*axis_y_rrrs_axes3_in_base_z + qd_2*r_2_r0_x)
-    )
-    qd_1 = (
-    inv_v_1_z*(S_dot_x*axis_z_rrrs_axes3_in_base_x + S_dot_y*axis_z_rrrs_axes3_in_base_y +
-        S_dot_z*axis_z_rrrs_axes3_in_base_z)
-    )
-    # (rrrs-V13) angular velocity of link 1
-    omega_1_t = qd_1*s_2
-    omega_1_t_2 = c_2*qd_1
-    # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_x = omega_1_t_2*qd_2
-    zeta_2_y = omega_1_t*qd_2
-    # (rrrs-V15) angular velocity of link 2
-    omega_2_r0_x = omega_1_t_2*s_3 - c_3*omega_1_t
-    omega_2_r0_y = -c_3*omega_1_t_2 - omega_1_t*s_3
-    # (rrrs-A5) angular acceleration of link 3 from the turning of axis 3
-    zeta_3_y = omega_2_r0_x*qd_3
-    # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_r0_y = s_3*zeta_2_x - c_3*zeta_2_y
-    # (rrrs-A6) angular acceleration of link 3 at zero joint accelerations
-    beta_3_y = zeta_2_r0_y - zeta_3_y
-    # (rrrs-V17) angular velocity of link 3
-    omega_3_z = qd_3 - qd_2
-    # (rrrs-V16) centripetal tensor of link 2
-    W_2_t = omega_1_t*omega_1_t
-    W_2_t_2 = omega_1_t_2*omega_1_t_2
-    W_2_t_3 = qd_2*qd_2
-    W_2_xy = omega_1_t*omega_1_t_2
-    # (rrrs-V18) centripetal tensor of link 3
-    W_3_t = omega_2_r0_x*omega_2_r0_x
-    W_3_t_2 = omega_2_r0_y*omega_2_r0_y
-    W_3_t_3 = omega_3_z*omega_3_z
-    W_3_xy = omega_2_r0_x*omega_2_r0_y
-    W_3_xz = omega_2_r0_x*omega_3_z
-    W_3_yz = omega_2_r0_y*omega_3_z
-    # (rrrs-A7) acceleration of the connection point at zero joint accelerations
-    bias_t = rrrs_joint2_offset_x*s_2
-    bias_t_2 = c_2*rrrs_joint2_offset_x
-    bias_t_3 = (
-    omega_2_r0_x*(-bias_t*s_3 - bias_t_2*c_3) - omega_2_r0_y*(bias_t_2*s_3 - bias_t*c_3)
-    )
-    bias_t_4 = c_3*rrrs_joint3_offset_x
-    bias_t_5 = rrrs_joint3_offset_x*s_3
-    bias_t_6 = bias_t_5*qd_2
-    bias_t_7 = bias_t_4*qd_2
-    bias_t_8 = bias_t_5*omega_2_r0_x - bias_t_4*omega_2_r0_y
-    bias_t_9 = omega_3_z*rrrs_platform_joint_offset_x
-    bias_t_10 = omega_2_r0_y*rrrs_platform_joint_offset_x
-    bias_x = (
-    bias_t_3*omega_2_r0_y + bias_t_8*omega_2_r0_y - bias_t_10*omega_2_r0_y - bias_t_7*qd_2 -
-        bias_t_9*omega_3_z
-    )
-    bias_y = (
-    bias_t_10*omega_2_r0_x - bias_t_3*omega_2_r0_x - bias_t_6*qd_2 - bias_t_8*omega_2_r0_x
-    )
-    bias_z = (
-    bias_t_5*(c_3*zeta_2_x + s_3*zeta_2_y) + bias_t_9*omega_2_r0_x -
-        beta_3_y*rrrs_platform_joint_offset_x - bias_t_4*zeta_2_r0_y - bias_t_6*omega_2_r0_y -
-        bias_t_7*omega_2_r0_x
-    )
-    # (rrrs-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-    g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
-    g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
-    g_r3_x = -c_2*g_r1_y - g_r0_z*s_2
-    g_r3_y = g_r1_y*s_2 - c_2*g_r0_z
-    # (rrrs-V7) reciprocal vector 1
-    w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_v_1_z
-    w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_v_1_z
-    w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_v_1_z
-    # (M8) moment of the column's unit force about the platform origin
-    H_a_1_x = q_in_base_y*w_1_t_5 - q_in_base_z*w_1_t_4
-    H_a_1_y = q_in_base_z*w_1_t_3 - q_in_base_x*w_1_t_5
-    H_a_1_z = q_in_base_x*w_1_t_4 - q_in_base_y*w_1_t_3
-    # (rrrs-V8) reciprocal vector 2
-    w_2_t = axis_x_rrrs_axes3_x*inv_r_2_r0_y
-    w_2_t_2 = axis_x_rrrs_axes3_y*inv_r_2_r0_y
-    w_2_t_3 = axis_x_rrrs_axes3_z*inv_r_2_r0_y
-    # (M9) moment of the column's unit force about the platform origin
-    H_a_2_x = q_in_base_z*w_2_t_2 - q_in_base_y*w_2_t_3
-    H_a_2_y = q_in_base_x*w_2_t_3 - q_in_base_z*w_2_t
-    H_a_2_z = q_in_base_y*w_2_t - q_in_base_x*w_2_t_2
-    # (rrrs-A2) acceleration of the connection point without its centripetal part
-    a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-    a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-    a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-    # (rrrs-A3) acceleration of the connection point
-    S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-    S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-    S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-    S_ddot_tip_x = (
-    S_ddot_x*axis_x_rrrs_axes3_x + S_ddot_y*axis_x_rrrs_axes3_y + S_ddot_z*axis_x_rrrs_axes3_z
-    )
-    S_ddot_tip_y = (
-    S_ddot_x*axis_y_rrrs_axes3_in_base_x + S_ddot_y*axis_y_rrrs_axes3_in_base_y +
-        S_ddot_z*axis_y_rrrs_axes3_in_base_z
-    )
-    S_ddot_tip_z = (
-    S_ddot_x*axis_z_rrrs_axes3_in_base_x + S_ddot_y*axis_z_rrrs_axes3_in_base_y +
-        S_ddot_z*axis_z_rrrs_axes3_in_base_z
-    )
-    # (rrrs-A8) acceleration of the connection point left to the joint accelerations
-    rel_x = S_ddot_tip_x - bias_x
-    rel_y = S_ddot_tip_y - bias_y
-    rel_z = S_ddot_tip_z - bias_z
-    # (rrrs-A10) acceleration of joint 1
-    qdd_2 = inv_r_2_r0_y*rel_x
-    qdd_1 = inv_v_1_z*rel_z
-    # (rrrs-N9) acceleration of the reference point of link 3, less gravity
-    acc_3_x = (
-    S_ddot_tip_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
-        axis_x_rrrs_axes3_z*gravity_z
-    )
-    acc_3_y = (
-    S_ddot_tip_y - axis_y_rrrs_axes3_in_base_x*gravity_x - axis_y_rrrs_axes3_in_base_y*gravity_y -
-        axis_y_rrrs_axes3_in_base_z*gravity_z
-    )
-    acc_3_z = (
-    S_ddot_tip_z - axis_z_rrrs_axes3_in_base_x*gravity_x - axis_z_rrrs_axes3_in_base_y*gravity_y -
-        axis_z_rrrs_axes3_in_base_z*gravity_z
-    )
-    # (rrrs-A16) angular acceleration of link 1
-    alpha_1_t = qdd_1*s_2
-    alpha_1_t_2 = c_2*qdd_1
-    # (rrrs-A20) angular acceleration of link 2
-    alpha_2_x = zeta_2_x - alpha_1_t
-    alpha_2_y = -alpha_1_t_2 - zeta_2_y
-    # (rrrs-A22) acceleration tensor of link 2
-    B_2_xy = W_2_xy + qdd_2
-    B_2_yx = W_2_xy - qdd_2
-    B_2_zx = zeta_2_y - alpha_2_y
-    B_2_zy = alpha_2_x + zeta_2_x
-    # (rrrs-N36) inertia moment of the links that turn with link 2, about their reference points
-    mu_2_x = (
-    B_2_yx*J_2_xz + B_2_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) + g_r3_y*h_2_z - B_2_zx*J_2_xy
-        - Sigma_2_zz*alpha_1_t - g_r1_x*h_2_y
-    )
-    mu_2_y = (
-    B_2_zy*J_2_xy + g_r1_x*h_2_x - B_2_xy*J_2_yz - B_2_zx*Sigma_2_xx - J_2_xz*(W_2_t - W_2_t_3) -
-        Sigma_2_zz*alpha_1_t_2 - g_r3_x*h_2_z
-    )
-    mu_2_z = (
-    B_2_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + g_r3_x*h_2_y - B_2_xy*Sigma_2_yy -
-        J_2_xz*alpha_1_t - J_2_yz*alpha_1_t_2 - g_r3_y*h_2_x
-    )
-    # (rrrs-A24) angular acceleration of link 3
-    alpha_3_x = alpha_2_x*c_3 + omega_2_r0_y*qd_3 - alpha_2_y*s_3
-    alpha_3_y = alpha_2_x*s_3 + alpha_2_y*c_3 - zeta_3_y
-    alpha_3_z = inv_rrrs_platform_joint_offset_x*(rel_y + qdd_2*r_2_r0_x) - qdd_2
-    # (rrrs-A27) acceleration tensor of link 3
-    B_3_xy = W_3_xy - alpha_3_z
-    B_3_xz = W_3_xz + alpha_3_y
-    B_3_yx = W_3_xy + alpha_3_z
-    B_3_yz = W_3_yz - alpha_3_x
-    B_3_zx = W_3_xz - alpha_3_y
-    B_3_zy = W_3_yz + alpha_3_x
-    # (rrrs-N29) inertia moment of the links that turn with link 3, about their reference points
-    mu_3_x = (
-    B_3_yx*J_3_xz + B_3_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) + acc_3_z*h_3_y -
-        B_3_yz*Sigma_3_zz - B_3_zx*J_3_xy - acc_3_y*h_3_z
-    )
-    mu_3_y = (
-    B_3_xz*Sigma_3_zz + B_3_zy*J_3_xy + acc_3_x*h_3_z - B_3_xy*J_3_yz - B_3_zx*Sigma_3_xx -
-        J_3_xz*(W_3_t - W_3_t_3) - acc_3_z*h_3_x
-    )
-    mu_3_z = (
-    B_3_xz*J_3_yz + B_3_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + acc_3_y*h_3_x -
-        B_3_xy*Sigma_3_yy - B_3_yz*J_3_xz - acc_3_x*h_3_y
-    )
-    # (rrrs-N38) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-    N_2_x = mu_2_x + c_3*mu_3_x + mu_3_y*s_3
-    N_2_y = mu_2_y + c_3*mu_3_y - mu_3_x*s_3
-    N_2_z = mu_2_z + mu_3_z
-    # (rrrs-N45) inertia moment of the links that turn with link 1, about their reference points
-    mu_1_z = J_1_xx*qdd_1 - g_r1_x*h_1_y - g_r1_y*h_1_z
-    # (rrrs-N47) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-    N_1_z = mu_1_z - N_2_x*s_2 - N_2_y*c_2
-    # (rrrs-N52) force at the connection point that balances the leg's inertia and weight along all freedoms
-    G_t = inv_rrrs_platform_joint_offset_x*mu_3_z
-    # (rrrs-N55) leg force on the platform without actuation and without the mass at the connection point
-    c_x = (
-    h_3_x*(W_3_t_2 + W_3_t_3) - B_3_xy*h_3_y - B_3_xz*h_3_z - inv_r_2_r0_y*(G_t*r_2_r0_x - N_2_z)
-    )
-    c_y = h_3_y*(W_3_t + W_3_t_3) - G_t - B_3_yx*h_3_x - B_3_yz*h_3_z
-    c_z = h_3_z*(W_3_t + W_3_t_2) - B_3_zx*h_3_x - B_3_zy*h_3_y - N_1_z*inv_v_1_z
-    c_in_base_x = (
-    axis_x_rrrs_axes3_x*c_x + axis_y_rrrs_axes3_in_base_x*c_y + axis_z_rrrs_axes3_in_base_x*c_z
-    )
-    c_in_base_y = (
-    axis_x_rrrs_axes3_y*c_x + axis_y_rrrs_axes3_in_base_y*c_y + axis_z_rrrs_axes3_in_base_y*c_z
-    )
-    c_in_base_z = (
-    axis_x_rrrs_axes3_z*c_x + axis_y_rrrs_axes3_in_base_z*c_y + axis_z_rrrs_axes3_in_base_z*c_z
-    )
-    # (E5) moment that actuators and external wrench must give
-    R_a_t = c_in_base_z*q_in_base_y - c_in_base_y*q_in_base_z
-    R_a_t_2 = c_in_base_x*q_in_base_z - c_in_base_z*q_in_base_x
-    R_a_t_3 = c_in_base_y*q_in_base_x - c_in_base_x*q_in_base_y
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * rho2_2_t) & (disc_2 >= 0.0) & (abs(v_1_z) > _TOLERANCE * size) & (abs(-r_2_r0_y) > _TOLERANCE * size)
-    return (
-    ok, (c_in_base_x, c_in_base_y, c_in_base_z, R_a_t, R_a_t_2, R_a_t_3,), (w_1_t_3, w_1_t_4,
-        w_1_t_5, H_a_1_x, H_a_1_y, H_a_1_z, -w_2_t, -w_2_t_2, -w_2_t_3, H_a_2_x, H_a_2_y,
-        H_a_2_z,),
-    )
-
-
-def _required_after(c, s, t, f):
-    f_p_x, f_p_y, f_p_z, mu_p_in_base_x, mu_p_in_base_y, mu_p_in_base_z = s
-    total_rrrs_x, total_rrrs_y, total_rrrs_z, total_rrrs_x_2, total_rrrs_y_2, total_rrrs_z_2 = t
+    total_rrrs_x, total_rrrs_y, total_rrrs_z, total_rrrs_x_2, total_rrrs_y_2, total_rrrs_z_2,
+    ) = sums
     # (E4) force that actuators and external wrench must give
     R_t_x = f_p_x - total_rrrs_x
     R_t_y = f_p_y - total_rrrs_y
@@ -2871,12 +3344,20 @@ def _required_after(c, s, t, f):
     R_a_x = mu_p_in_base_x - total_rrrs_x_2
     R_a_y = mu_p_in_base_y - total_rrrs_y_2
     R_a_z = mu_p_in_base_z - total_rrrs_z_2
-    ok = True
-    return (ok, (R_t_x, R_t_y, R_t_z, R_a_x, R_a_y, R_a_z,),)
+    out_required[0] = R_t_x
+    out_required[1] = R_t_y
+    out_required[2] = R_t_z
+    out_required[3] = R_a_x
+    out_required[4] = R_a_y
+    out_required[5] = R_a_z
+    return ok, (out_required, out_H,)
 
 
 # inverse_kinematics: 144 mul, 84 add, 6 div, 6 sqrt, 9 trig
-def _inverse_kinematics_before(c, X, f):
+def _run_inverse_kinematics(m, X):
+    sqrt = m.sqrt
+    atan2 = m.atan2
+    shared, legs = m.constants("inverse_kinematics")
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -2911,81 +3392,85 @@ def _inverse_kinematics_before(c, X, f):
     R_zx = quaternion_xz - quaternion_wy
     R_zy = quaternion_wx + quaternion_yz
     R_zz = 1.0 - quaternion_xx - quaternion_yy
-    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    return (ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz,), (),)
-
-
-def _inverse_kinematics_rrrs(c, k, x, s, f):
-    sqrt = f.sqrt
-    atan2 = f.atan2
-    (
-    Kd_2_t, Kd_2_t_2, branch_1, branch_2, inv_size_t, inv_size_t_2, rho2_2_t, rrrs_base_frame_xx,
-        rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-        rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
-        rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x,
-        rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-        rrrs_platform_point_y, rrrs_platform_point_z, size_t_3,
-    ) = k
-    t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
-    # (rrrs-K1) from the base point to the connection point
-    S_x = (
-    t_x + R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z -
-        rrrs_base_point_x
-    )
-    S_y = (
-    t_y + R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z -
-        rrrs_base_point_y
-    )
-    S_z = (
-    t_z + R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z -
-        rrrs_base_point_z
-    )
-    # (rrrs-K2) component along the reference direction
-    px_1 = S_x*rrrs_base_frame_xy + S_y*rrrs_base_frame_yy + S_z*rrrs_base_frame_zy
-    # (rrrs-K3) component across the reference direction
-    py_1 = S_x*rrrs_base_frame_xz + S_y*rrrs_base_frame_yz + S_z*rrrs_base_frame_zz
-    # (rrrs-K5) squared amplitude
-    rho2_1 = px_1*px_1 + py_1*py_1
-    # (rrrs-K7) root, with the sign of the branch
-    root_1 = branch_1*sqrt(rho2_1)
-    # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
-    xi_1_t = S_x*rrrs_base_frame_xx + S_y*rrrs_base_frame_yx + S_z*rrrs_base_frame_zx
-    # (rrrs-K12) from the origin of joint 2 to the connection point
-    x_2_z = xi_1_t - rrrs_joint2_offset_x
-    # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-    Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
-    Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
-    # (rrrs-K17) factor of the cosine in the equation of joint 2
-    Kc_2 = root_1*rrrs_joint3_offset_x
-    # (rrrs-K18) factor of the sine in the equation of joint 2
-    Ks_2 = rrrs_joint3_offset_x*x_2_z
-    # (rrrs-K19) squared amplitude
-    rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
-    # (rrrs-K20) discriminant
-    disc_2 = rho2_2 - Kd_2*Kd_2
-    # (rrrs-K21) root, with the sign of the branch
-    root_2 = branch_2*sqrt(disc_2)
-    # (rrrs-K27) from the origin of joint 3 to the connection point
-    x_3_x = Kd_2*inv_size_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
-    # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
-    inv_rho2_2 = 1.0/rho2_2
-    # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
-    inv_rho2_1 = 1.0/rho2_1
-    # (rrrs-K10) displacement of joint 1
-    q_1 = atan2(inv_rho2_1*py_1*root_1, inv_rho2_1*px_1*root_1)
-    # (rrrs-K24) displacement of joint 2
-    q_2 = atan2(inv_rho2_2*(Kc_2*Kd_2 + Ks_2*root_2), -inv_rho2_2*(Kc_2*root_2 - Kd_2*Ks_2))
-    # (rrrs-K31) displacement of joint 3
-    q_3 = (
-    atan2(-inv_size_t*inv_size_t_2*root_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x,
-        inv_size_t_2*rrrs_platform_joint_offset_x*x_3_x)
-    )
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * rho2_2_t) & (disc_2 >= 0.0)
-    return (ok, (), (q_1, q_2, q_3,),)
+    ok = True
+    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    out_q = m.zeros(9)
+    for leg, k in legs[0]:
+        (
+        Kd_2_t, Kd_2_t_2, branch_1, branch_2, inv_size_t, inv_size_t_2, rho2_2_t,
+            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
+            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, size_t_3,
+        ) = k
+        # (rrrs-K1) from the base point to the connection point
+        S_x = (
+        t_x + R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
+            - rrrs_base_point_x
+        )
+        S_y = (
+        t_y + R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
+            - rrrs_base_point_y
+        )
+        S_z = (
+        t_z + R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
+            - rrrs_base_point_z
+        )
+        # (rrrs-K2) component along the reference direction
+        px_1 = S_x*rrrs_base_frame_xy + S_y*rrrs_base_frame_yy + S_z*rrrs_base_frame_zy
+        # (rrrs-K3) component across the reference direction
+        py_1 = S_x*rrrs_base_frame_xz + S_y*rrrs_base_frame_yz + S_z*rrrs_base_frame_zz
+        # (rrrs-K5) squared amplitude
+        rho2_1 = px_1*px_1 + py_1*py_1
+        # (rrrs-K7) root, with the sign of the branch
+        root_1 = branch_1*sqrt(rho2_1)
+        # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
+        xi_1_t = S_x*rrrs_base_frame_xx + S_y*rrrs_base_frame_yx + S_z*rrrs_base_frame_zx
+        # (rrrs-K12) from the origin of joint 2 to the connection point
+        x_2_z = xi_1_t - rrrs_joint2_offset_x
+        # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
+        Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
+        # (rrrs-K17) factor of the cosine in the equation of joint 2
+        Kc_2 = root_1*rrrs_joint3_offset_x
+        # (rrrs-K18) factor of the sine in the equation of joint 2
+        Ks_2 = rrrs_joint3_offset_x*x_2_z
+        # (rrrs-K19) squared amplitude
+        rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
+        # (rrrs-K20) discriminant
+        disc_2 = rho2_2 - Kd_2*Kd_2
+        # (rrrs-K21) root, with the sign of the branch
+        root_2 = branch_2*sqrt(disc_2)
+        # (rrrs-K27) from the origin of joint 3 to the connection point
+        x_3_x = Kd_2*inv_size_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
+        inv_rho2_2 = 1.0/rho2_2
+        # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
+        inv_rho2_1 = 1.0/rho2_1
+        # (rrrs-K10) displacement of joint 1
+        q_1 = atan2(inv_rho2_1*py_1*root_1, inv_rho2_1*px_1*root_1)
+        # (rrrs-K24) displacement of joint 2
+        q_2 = atan2(inv_rho2_2*(Kc_2*Kd_2 + Ks_2*root_2), -inv_rho2_2*(Kc_2*root_2 - Kd_2*Ks_2))
+        # (rrrs-K31) displacement of joint 3
+        q_3 = (
+        atan2(-inv_size_t*inv_size_t_2*root_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x,
+            inv_size_t_2*rrrs_platform_joint_offset_x*x_3_x)
+        )
+        ok = (
+        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) >
+            _TOLERANCE * _TOLERANCE * rho2_2_t) & (disc_2 >= 0.0))
+        )
+        out_q[[0, 3, 6][leg]] = q_1
+        out_q[[1, 4, 7][leg]] = q_2
+        out_q[[2, 5, 8][leg]] = q_3
+    return ok, (out_q,)
 
 
 # joint_rates: 324 mul, 189 add, 12 div, 6 sqrt, 0 trig
-def _joint_rates_before(c, X, V, f):
+def _run_joint_rates(m, X, V):
+    sqrt = m.sqrt
+    shared, legs = m.constants("joint_rates")
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -3033,138 +3518,138 @@ def _joint_rates_before(c, X, V, f):
     omega_x = V_3
     omega_y = V_4
     omega_z = V_5
-    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    return (
-    ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
-        t_dot_z, omega_x, omega_y, omega_z,), (),
-    )
-
-
-def _joint_rates_rrrs(c, k, x, s, f):
-    sqrt = f.sqrt
-    (
-    Kd_2_t, Kd_2_t_2, branch_1, branch_2, inv_rrrs_platform_joint_offset_x, inv_size_t,
-        inv_size_t_2, rho2_2_t, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
-        rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-        rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-        rrrs_base_point_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
-        rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
-        rrrs_platform_point_z, size, size_t_3,
-    ) = k
-    (
-    t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
-        t_dot_z, omega_x, omega_y, omega_z,
-    ) = s
-    # (rrrs-K1) from the base point to the connection point
-    q_in_base_x = (
-    R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
-    )
-    q_in_base_y = (
-    R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
-    )
-    q_in_base_z = (
-    R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
-    )
-    S_x = q_in_base_x + t_x - rrrs_base_point_x
-    S_y = q_in_base_y + t_y - rrrs_base_point_y
-    S_z = q_in_base_z + t_z - rrrs_base_point_z
-    # (rrrs-K2) component along the reference direction
-    px_1 = S_x*rrrs_base_frame_xy + S_y*rrrs_base_frame_yy + S_z*rrrs_base_frame_zy
-    # (rrrs-K3) component across the reference direction
-    py_1 = S_x*rrrs_base_frame_xz + S_y*rrrs_base_frame_yz + S_z*rrrs_base_frame_zz
-    # (rrrs-K5) squared amplitude
-    rho2_1 = px_1*px_1 + py_1*py_1
-    # (rrrs-K7) root, with the sign of the branch
-    root_1 = branch_1*sqrt(rho2_1)
-    # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
-    xi_1_t = S_x*rrrs_base_frame_xx + S_y*rrrs_base_frame_yx + S_z*rrrs_base_frame_zx
-    # (rrrs-K12) from the origin of joint 2 to the connection point
-    x_2_z = xi_1_t - rrrs_joint2_offset_x
-    # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-    Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
-    Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
-    # (rrrs-K17) factor of the cosine in the equation of joint 2
-    Kc_2 = root_1*rrrs_joint3_offset_x
-    # (rrrs-K18) factor of the sine in the equation of joint 2
-    Ks_2 = rrrs_joint3_offset_x*x_2_z
-    # (rrrs-K19) squared amplitude
-    rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
-    # (rrrs-K20) discriminant
-    disc_2 = rho2_2 - Kd_2*Kd_2
-    # (rrrs-K21) root, with the sign of the branch
-    root_2 = branch_2*sqrt(disc_2)
-    # (rrrs-K27) from the origin of joint 3 to the connection point
-    x_3_x = Kd_2*inv_size_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
-    # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-    c_3 = inv_size_t_2*rrrs_platform_joint_offset_x*x_3_x
-    # (rrrs-K30) sine of the angle of joint 3 from its reference direction
-    s_3 = inv_size_t*inv_size_t_2*root_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
-    # (rrrs-V2) from joint 2 to the connection point, along the links
-    r_2_t = rrrs_platform_joint_offset_x*s_3
-    r_2_x = rrrs_joint3_offset_x + c_3*rrrs_platform_joint_offset_x
-    # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
-    inv_rho2_2 = 1.0/rho2_2
-    c_2 = inv_rho2_2*(Kc_2*Kd_2 + Ks_2*root_2)
-    # (rrrs-K23) sine of the angle of joint 2 from its reference direction
-    s_2 = inv_rho2_2*(Kc_2*root_2 - Kd_2*Ks_2)
-    # (rrrs-V4) velocity of the connection point per rate of joint 1
-    e_1_r2_x = c_2*s_3 - c_3*s_2
-    e_1_r2_y = -c_2*c_3 - s_2*s_3
-    # (rrrs-V3) from joint 1 to the connection point, along the links
-    r_1_r1_x = c_2*root_1 - s_2*xi_1_t
-    r_1_r1_y = -c_2*xi_1_t - root_1*s_2
-    # (rrrs-V4) velocity of the connection point per rate of joint 1
-    v_1_z = e_1_r2_x*(c_3*r_1_r1_y + r_1_r1_x*s_3) - e_1_r2_y*(c_3*r_1_r1_x - r_1_r1_y*s_3)
-    # (rrrs-V2) from joint 2 to the connection point, along the links
-    r_2_r0_y = r_2_x*s_3 - c_3*r_2_t
-    # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
-    inv_rho2_1 = 1.0/rho2_1
-    c_1 = inv_rho2_1*py_1*root_1
-    # (rrrs-K9) sine of the angle of joint 1 from its reference direction
-    s_1 = inv_rho2_1*px_1*root_1
-    # (rrrs-V7) reciprocal vector 1
-    axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*s_1 - c_1*rrrs_base_frame_xy
-    axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*s_1 - c_1*rrrs_base_frame_yy
-    axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*s_1 - c_1*rrrs_base_frame_zy
-    w_1_t = e_1_r2_x*s_1
-    w_1_t_2 = c_1*e_1_r2_x
-    axis_y_rrrs_axes3_in_base_x = (
-    e_1_r2_y*rrrs_base_frame_xx + rrrs_base_frame_xy*w_1_t + rrrs_base_frame_xz*w_1_t_2
-    )
-    axis_y_rrrs_axes3_in_base_y = (
-    e_1_r2_y*rrrs_base_frame_yx + rrrs_base_frame_yy*w_1_t + rrrs_base_frame_yz*w_1_t_2
-    )
-    axis_y_rrrs_axes3_in_base_z = (
-    e_1_r2_y*rrrs_base_frame_zx + rrrs_base_frame_zy*w_1_t + rrrs_base_frame_zz*w_1_t_2
-    )
-    # (rrrs-V1) velocity of the connection point
-    S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y
-    S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z
-    S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x
-    # (rrrs-V10) rate of joint 1
-    qd_2 = (
-    (S_dot_x*(axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
-        axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y) +
-        S_dot_y*(axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
-        axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z) +
-        S_dot_z*(axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
-        axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x))/r_2_r0_y
-    )
-    qd_3 = (
-    inv_rrrs_platform_joint_offset_x*(S_dot_x*axis_y_rrrs_axes3_in_base_x +
-        S_dot_y*axis_y_rrrs_axes3_in_base_y + S_dot_z*axis_y_rrrs_axes3_in_base_z +
-        qd_2*(c_3*r_2_x + r_2_t*s_3))
-    )
-    qd_1 = (
-    (S_dot_x*axis_z_rrrs_axes3_in_base_x + S_dot_y*axis_z_rrrs_axes3_in_base_y +
-        S_dot_z*axis_z_rrrs_axes3_in_base_z)/v_1_z
-    )
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * rho2_2_t) & (disc_2 >= 0.0) & (abs(v_1_z) > _TOLERANCE * size) & (abs(-r_2_r0_y) > _TOLERANCE * size)
-    return (ok, (), (qd_1, -qd_2, qd_3,),)
+    ok = True
+    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    out_qd = m.zeros(9)
+    for leg, k in legs[0]:
+        (
+        Kd_2_t, Kd_2_t_2, branch_1, branch_2, inv_rrrs_platform_joint_offset_x, inv_size_t,
+            inv_size_t_2, rho2_2_t, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+            rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+            rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+            rrrs_base_point_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
+            rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
+            rrrs_platform_point_z, size, size_t_3,
+        ) = k
+        # (rrrs-K1) from the base point to the connection point
+        q_in_base_x = (
+        R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
+        )
+        q_in_base_y = (
+        R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
+        )
+        q_in_base_z = (
+        R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
+        )
+        S_x = q_in_base_x + t_x - rrrs_base_point_x
+        S_y = q_in_base_y + t_y - rrrs_base_point_y
+        S_z = q_in_base_z + t_z - rrrs_base_point_z
+        # (rrrs-K2) component along the reference direction
+        px_1 = S_x*rrrs_base_frame_xy + S_y*rrrs_base_frame_yy + S_z*rrrs_base_frame_zy
+        # (rrrs-K3) component across the reference direction
+        py_1 = S_x*rrrs_base_frame_xz + S_y*rrrs_base_frame_yz + S_z*rrrs_base_frame_zz
+        # (rrrs-K5) squared amplitude
+        rho2_1 = px_1*px_1 + py_1*py_1
+        # (rrrs-K7) root, with the sign of the branch
+        root_1 = branch_1*sqrt(rho2_1)
+        # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
+        xi_1_t = S_x*rrrs_base_frame_xx + S_y*rrrs_base_frame_yx + S_z*rrrs_base_frame_zx
+        # (rrrs-K12) from the origin of joint 2 to the connection point
+        x_2_z = xi_1_t - rrrs_joint2_offset_x
+        # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
+        Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
+        # (rrrs-K17) factor of the cosine in the equation of joint 2
+        Kc_2 = root_1*rrrs_joint3_offset_x
+        # (rrrs-K18) factor of the sine in the equation of joint 2
+        Ks_2 = rrrs_joint3_offset_x*x_2_z
+        # (rrrs-K19) squared amplitude
+        rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
+        # (rrrs-K20) discriminant
+        disc_2 = rho2_2 - Kd_2*Kd_2
+        # (rrrs-K21) root, with the sign of the branch
+        root_2 = branch_2*sqrt(disc_2)
+        # (rrrs-K27) from the origin of joint 3 to the connection point
+        x_3_x = Kd_2*inv_size_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
+        c_3 = inv_size_t_2*rrrs_platform_joint_offset_x*x_3_x
+        # (rrrs-K30) sine of the angle of joint 3 from its reference direction
+        s_3 = inv_size_t*inv_size_t_2*root_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        # (rrrs-V2) from joint 2 to the connection point, along the links
+        r_2_t = rrrs_platform_joint_offset_x*s_3
+        r_2_x = rrrs_joint3_offset_x + c_3*rrrs_platform_joint_offset_x
+        # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
+        inv_rho2_2 = 1.0/rho2_2
+        c_2 = inv_rho2_2*(Kc_2*Kd_2 + Ks_2*root_2)
+        # (rrrs-K23) sine of the angle of joint 2 from its reference direction
+        s_2 = inv_rho2_2*(Kc_2*root_2 - Kd_2*Ks_2)
+        # (rrrs-V4) velocity of the connection point per rate of joint 1
+        e_1_r2_x = c_2*s_3 - c_3*s_2
+        e_1_r2_y = -c_2*c_3 - s_2*s_3
+        # (rrrs-V3) from joint 1 to the connection point, along the links
+        r_1_r1_x = c_2*root_1 - s_2*xi_1_t
+        r_1_r1_y = -c_2*xi_1_t - root_1*s_2
+        # (rrrs-V4) velocity of the connection point per rate of joint 1
+        v_1_z = e_1_r2_x*(c_3*r_1_r1_y + r_1_r1_x*s_3) - e_1_r2_y*(c_3*r_1_r1_x - r_1_r1_y*s_3)
+        # (rrrs-V2) from joint 2 to the connection point, along the links
+        r_2_r0_y = r_2_x*s_3 - c_3*r_2_t
+        # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
+        inv_rho2_1 = 1.0/rho2_1
+        c_1 = inv_rho2_1*py_1*root_1
+        # (rrrs-K9) sine of the angle of joint 1 from its reference direction
+        s_1 = inv_rho2_1*px_1*root_1
+        # (rrrs-V7) reciprocal vector 1
+        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*s_1 - c_1*rrrs_base_frame_xy
+        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*s_1 - c_1*rrrs_base_frame_yy
+        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*s_1 - c_1*rrrs_base_frame_zy
+        w_1_t = e_1_r2_x*s_1
+        w_1_t_2 = c_1*e_1_r2_x
+        axis_y_rrrs_axes3_in_base_x = (
+        e_1_r2_y*rrrs_base_frame_xx + rrrs_base_frame_xy*w_1_t + rrrs_base_frame_xz*w_1_t_2
+        )
+        axis_y_rrrs_axes3_in_base_y = (
+        e_1_r2_y*rrrs_base_frame_yx + rrrs_base_frame_yy*w_1_t + rrrs_base_frame_yz*w_1_t_2
+        )
+        axis_y_rrrs_axes3_in_base_z = (
+        e_1_r2_y*rrrs_base_frame_zx + rrrs_base_frame_zy*w_1_t + rrrs_base_frame_zz*w_1_t_2
+        )
+        # (rrrs-V1) velocity of the connection point
+        S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y
+        S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z
+        S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x
+        # (rrrs-V10) rate of joint 1
+        qd_2 = (
+        (S_dot_x*(axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
+            axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y) +
+            S_dot_y*(axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
+            axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z) +
+            S_dot_z*(axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
+            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x))/r_2_r0_y
+        )
+        qd_3 = (
+        inv_rrrs_platform_joint_offset_x*(S_dot_x*axis_y_rrrs_axes3_in_base_x +
+            S_dot_y*axis_y_rrrs_axes3_in_base_y + S_dot_z*axis_y_rrrs_axes3_in_base_z +
+            qd_2*(c_3*r_2_x + r_2_t*s_3))
+        )
+        qd_1 = (
+        (S_dot_x*axis_z_rrrs_axes3_in_base_x + S_dot_y*axis_z_rrrs_axes3_in_base_y +
+            S_dot_z*axis_z_rrrs_axes3_in_base_z)/v_1_z
+        )
+        ok = (
+        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) >
+            _TOLERANCE * _TOLERANCE * rho2_2_t) & (disc_2 >= 0.0) & (abs(v_1_z) > _TOLERANCE *
+            size) & (abs(-r_2_r0_y) > _TOLERANCE * size))
+        )
+        out_qd[[0, 3, 6][leg]] = qd_1
+        out_qd[[1, 4, 7][leg]] = -qd_2
+        out_qd[[2, 5, 8][leg]] = qd_3
+    return ok, (out_qd,)
 
 
 # joint_accelerations: 537 mul, 321 add, 12 div, 6 sqrt, 0 trig
-def _joint_accelerations_before(c, X, V, A, f):
+def _run_joint_accelerations(m, X, V, A):
+    sqrt = m.sqrt
+    shared, legs = m.constants("joint_accelerations")
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -3225,219 +3710,219 @@ def _joint_accelerations_before(c, X, V, A, f):
     alpha_x = A_3
     alpha_y = A_4
     alpha_z = A_5
-    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    return (
-    ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
-        t_dot_z, omega_x, omega_y, omega_z, t_ddot_x, t_ddot_y, t_ddot_z, alpha_x, alpha_y,
-        alpha_z,), (),
-    )
-
-
-def _joint_accelerations_rrrs(c, k, x, s, f):
-    sqrt = f.sqrt
-    (
-    Kd_2_t, Kd_2_t_2, branch_1, branch_2, inv_rrrs_platform_joint_offset_x, inv_size_t,
-        inv_size_t_2, rho2_2_t, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
-        rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-        rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-        rrrs_base_point_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
-        rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
-        rrrs_platform_point_z, size, size_t_3,
-    ) = k
-    (
-    t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
-        t_dot_z, omega_x, omega_y, omega_z, t_ddot_x, t_ddot_y, t_ddot_z, alpha_x, alpha_y,
-        alpha_z,
-    ) = s
-    # (rrrs-K1) from the base point to the connection point
-    q_in_base_x = (
-    R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
-    )
-    q_in_base_y = (
-    R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
-    )
-    q_in_base_z = (
-    R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
-    )
-    S_x = q_in_base_x + t_x - rrrs_base_point_x
-    S_y = q_in_base_y + t_y - rrrs_base_point_y
-    S_z = q_in_base_z + t_z - rrrs_base_point_z
-    # (rrrs-K2) component along the reference direction
-    px_1 = S_x*rrrs_base_frame_xy + S_y*rrrs_base_frame_yy + S_z*rrrs_base_frame_zy
-    # (rrrs-K3) component across the reference direction
-    py_1 = S_x*rrrs_base_frame_xz + S_y*rrrs_base_frame_yz + S_z*rrrs_base_frame_zz
-    # (rrrs-K5) squared amplitude
-    rho2_1 = px_1*px_1 + py_1*py_1
-    # (rrrs-K7) root, with the sign of the branch
-    root_1 = branch_1*sqrt(rho2_1)
-    # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
-    xi_1_t = S_x*rrrs_base_frame_xx + S_y*rrrs_base_frame_yx + S_z*rrrs_base_frame_zx
-    # (rrrs-K12) from the origin of joint 2 to the connection point
-    x_2_z = xi_1_t - rrrs_joint2_offset_x
-    # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-    Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
-    Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
-    # (rrrs-K17) factor of the cosine in the equation of joint 2
-    Kc_2 = root_1*rrrs_joint3_offset_x
-    # (rrrs-K18) factor of the sine in the equation of joint 2
-    Ks_2 = rrrs_joint3_offset_x*x_2_z
-    # (rrrs-K19) squared amplitude
-    rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
-    # (rrrs-K20) discriminant
-    disc_2 = rho2_2 - Kd_2*Kd_2
-    # (rrrs-K21) root, with the sign of the branch
-    root_2 = branch_2*sqrt(disc_2)
-    # (rrrs-K27) from the origin of joint 3 to the connection point
-    x_3_x = Kd_2*inv_size_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
-    # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-    c_3 = inv_size_t_2*rrrs_platform_joint_offset_x*x_3_x
-    # (rrrs-K30) sine of the angle of joint 3 from its reference direction
-    s_3 = inv_size_t*inv_size_t_2*root_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
-    # (rrrs-V2) from joint 2 to the connection point, along the links
-    r_2_t = rrrs_platform_joint_offset_x*s_3
-    r_2_x = rrrs_joint3_offset_x + c_3*rrrs_platform_joint_offset_x
-    # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
-    inv_rho2_2 = 1.0/rho2_2
-    c_2 = inv_rho2_2*(Kc_2*Kd_2 + Ks_2*root_2)
-    # (rrrs-K23) sine of the angle of joint 2 from its reference direction
-    s_2 = inv_rho2_2*(Kc_2*root_2 - Kd_2*Ks_2)
-    # (rrrs-V4) velocity of the connection point per rate of joint 1
-    e_1_r2_x = c_2*s_3 - c_3*s_2
-    e_1_r2_y = -c_2*c_3 - s_2*s_3
-    # (rrrs-V3) from joint 1 to the connection point, along the links
-    r_1_r1_x = c_2*root_1 - s_2*xi_1_t
-    r_1_r1_y = -c_2*xi_1_t - root_1*s_2
-    # (rrrs-V4) velocity of the connection point per rate of joint 1
-    v_1_z = e_1_r2_x*(c_3*r_1_r1_y + r_1_r1_x*s_3) - e_1_r2_y*(c_3*r_1_r1_x - r_1_r1_y*s_3)
-    # (rrrs-V2) from joint 2 to the connection point, along the links
-    r_2_r0_x = c_3*r_2_x + r_2_t*s_3
-    r_2_r0_y = r_2_x*s_3 - c_3*r_2_t
-    # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
-    inv_rho2_1 = 1.0/rho2_1
-    c_1 = inv_rho2_1*py_1*root_1
-    # (rrrs-K9) sine of the angle of joint 1 from its reference direction
-    s_1 = inv_rho2_1*px_1*root_1
-    # (rrrs-V7) reciprocal vector 1
-    axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*s_1 - c_1*rrrs_base_frame_xy
-    axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*s_1 - c_1*rrrs_base_frame_yy
-    axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*s_1 - c_1*rrrs_base_frame_zy
-    w_1_t = e_1_r2_x*s_1
-    w_1_t_2 = c_1*e_1_r2_x
-    axis_y_rrrs_axes3_in_base_x = (
-    e_1_r2_y*rrrs_base_frame_xx + rrrs_base_frame_xy*w_1_t + rrrs_base_frame_xz*w_1_t_2
-    )
-    axis_y_rrrs_axes3_in_base_y = (
-    e_1_r2_y*rrrs_base_frame_yx + rrrs_base_frame_yy*w_1_t + rrrs_base_frame_yz*w_1_t_2
-    )
-    axis_y_rrrs_axes3_in_base_z = (
-    e_1_r2_y*rrrs_base_frame_zx + rrrs_base_frame_zy*w_1_t + rrrs_base_frame_zz*w_1_t_2
-    )
-    axis_x_rrrs_axes3_x = (
-    axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
-        axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y
-    )
-    axis_x_rrrs_axes3_y = (
-    axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
-        axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z
-    )
-    axis_x_rrrs_axes3_z = (
-    axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
-        axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
-    )
-    inv_v_1_z = 1.0/v_1_z
-    # (rrrs-V8) reciprocal vector 2
-    inv_r_2_r0_y = 1.0/r_2_r0_y
-    # (rrrs-V1) velocity of the connection point
-    S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-    S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-    S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-    S_dot_x = S_dot_t + t_dot_x
-    S_dot_y = S_dot_t_2 + t_dot_y
-    S_dot_z = S_dot_t_3 + t_dot_z
-    # (rrrs-V10) rate of joint 1
-    qd_2 = (
-    inv_r_2_r0_y*(S_dot_x*axis_x_rrrs_axes3_x + S_dot_y*axis_x_rrrs_axes3_y +
-        S_dot_z*axis_x_rrrs_axes3_z)
-    )
-    qd_3 = (
-    inv_rrrs_platform_joint_offset_x*(S_dot_x*axis_y_rrrs_axes3_in_base_x +
-        S_dot_y*axis_y_rrrs_axes3_in_base_y + S_dot_z*axis_y_rrrs_axes3_in_base_z + qd_2*r_2_r0_x)
-    )
-    qd_1 = (
-    inv_v_1_z*(S_dot_x*axis_z_rrrs_axes3_in_base_x + S_dot_y*axis_z_rrrs_axes3_in_base_y +
-        S_dot_z*axis_z_rrrs_axes3_in_base_z)
-    )
-    # (rrrs-V13) angular velocity of link 1
-    omega_1_t = qd_1*s_2
-    omega_1_t_2 = c_2*qd_1
-    # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_x = omega_1_t_2*qd_2
-    zeta_2_y = omega_1_t*qd_2
-    # (rrrs-V15) angular velocity of link 2
-    omega_2_r0_x = omega_1_t_2*s_3 - c_3*omega_1_t
-    omega_2_r0_y = -c_3*omega_1_t_2 - omega_1_t*s_3
-    # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_r0_y = s_3*zeta_2_x - c_3*zeta_2_y
-    # (rrrs-A6) angular acceleration of link 3 at zero joint accelerations
-    beta_3_y = zeta_2_r0_y - omega_2_r0_x*qd_3
-    # (rrrs-V17) angular velocity of link 3
-    omega_3_z = qd_3 - qd_2
-    # (rrrs-A7) acceleration of the connection point at zero joint accelerations
-    bias_t = rrrs_joint2_offset_x*s_2
-    bias_t_2 = c_2*rrrs_joint2_offset_x
-    bias_t_3 = (
-    omega_2_r0_x*(-bias_t*s_3 - bias_t_2*c_3) - omega_2_r0_y*(bias_t_2*s_3 - bias_t*c_3)
-    )
-    bias_t_4 = c_3*rrrs_joint3_offset_x
-    bias_t_5 = rrrs_joint3_offset_x*s_3
-    bias_t_6 = bias_t_5*qd_2
-    bias_t_7 = bias_t_4*qd_2
-    bias_t_8 = bias_t_5*omega_2_r0_x - bias_t_4*omega_2_r0_y
-    bias_t_9 = omega_3_z*rrrs_platform_joint_offset_x
-    bias_t_10 = omega_2_r0_y*rrrs_platform_joint_offset_x
-    bias_x = (
-    bias_t_3*omega_2_r0_y + bias_t_8*omega_2_r0_y - bias_t_10*omega_2_r0_y - bias_t_7*qd_2 -
-        bias_t_9*omega_3_z
-    )
-    bias_y = (
-    bias_t_10*omega_2_r0_x - bias_t_3*omega_2_r0_x - bias_t_6*qd_2 - bias_t_8*omega_2_r0_x
-    )
-    bias_z = (
-    bias_t_5*(c_3*zeta_2_x + s_3*zeta_2_y) + bias_t_9*omega_2_r0_x -
-        beta_3_y*rrrs_platform_joint_offset_x - bias_t_4*zeta_2_r0_y - bias_t_6*omega_2_r0_y -
-        bias_t_7*omega_2_r0_x
-    )
-    # (rrrs-A2) acceleration of the connection point without its centripetal part
-    a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-    a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-    a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-    # (rrrs-A3) acceleration of the connection point
-    S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-    S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-    S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-    # (rrrs-A8) acceleration of the connection point left to the joint accelerations
-    rel_x = (
-    S_ddot_x*axis_x_rrrs_axes3_x + S_ddot_y*axis_x_rrrs_axes3_y + S_ddot_z*axis_x_rrrs_axes3_z -
-        bias_x
-    )
-    rel_y = (
-    S_ddot_x*axis_y_rrrs_axes3_in_base_x + S_ddot_y*axis_y_rrrs_axes3_in_base_y +
-        S_ddot_z*axis_y_rrrs_axes3_in_base_z - bias_y
-    )
-    rel_z = (
-    S_ddot_x*axis_z_rrrs_axes3_in_base_x + S_ddot_y*axis_z_rrrs_axes3_in_base_y +
-        S_ddot_z*axis_z_rrrs_axes3_in_base_z - bias_z
-    )
-    # (rrrs-A10) acceleration of joint 1
-    qdd_2 = inv_r_2_r0_y*rel_x
-    qdd_3 = inv_rrrs_platform_joint_offset_x*(rel_y + qdd_2*r_2_r0_x)
-    qdd_1 = inv_v_1_z*rel_z
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * rho2_2_t) & (disc_2 >= 0.0) & (abs(v_1_z) > _TOLERANCE * size) & (abs(-r_2_r0_y) > _TOLERANCE * size)
-    return (ok, (), (qdd_1, -qdd_2, qdd_3,),)
+    ok = True
+    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    out_qdd = m.zeros(9)
+    for leg, k in legs[0]:
+        (
+        Kd_2_t, Kd_2_t_2, branch_1, branch_2, inv_rrrs_platform_joint_offset_x, inv_size_t,
+            inv_size_t_2, rho2_2_t, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+            rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+            rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+            rrrs_base_point_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
+            rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
+            rrrs_platform_point_z, size, size_t_3,
+        ) = k
+        # (rrrs-K1) from the base point to the connection point
+        q_in_base_x = (
+        R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
+        )
+        q_in_base_y = (
+        R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
+        )
+        q_in_base_z = (
+        R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
+        )
+        S_x = q_in_base_x + t_x - rrrs_base_point_x
+        S_y = q_in_base_y + t_y - rrrs_base_point_y
+        S_z = q_in_base_z + t_z - rrrs_base_point_z
+        # (rrrs-K2) component along the reference direction
+        px_1 = S_x*rrrs_base_frame_xy + S_y*rrrs_base_frame_yy + S_z*rrrs_base_frame_zy
+        # (rrrs-K3) component across the reference direction
+        py_1 = S_x*rrrs_base_frame_xz + S_y*rrrs_base_frame_yz + S_z*rrrs_base_frame_zz
+        # (rrrs-K5) squared amplitude
+        rho2_1 = px_1*px_1 + py_1*py_1
+        # (rrrs-K7) root, with the sign of the branch
+        root_1 = branch_1*sqrt(rho2_1)
+        # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
+        xi_1_t = S_x*rrrs_base_frame_xx + S_y*rrrs_base_frame_yx + S_z*rrrs_base_frame_zx
+        # (rrrs-K12) from the origin of joint 2 to the connection point
+        x_2_z = xi_1_t - rrrs_joint2_offset_x
+        # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
+        Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
+        # (rrrs-K17) factor of the cosine in the equation of joint 2
+        Kc_2 = root_1*rrrs_joint3_offset_x
+        # (rrrs-K18) factor of the sine in the equation of joint 2
+        Ks_2 = rrrs_joint3_offset_x*x_2_z
+        # (rrrs-K19) squared amplitude
+        rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
+        # (rrrs-K20) discriminant
+        disc_2 = rho2_2 - Kd_2*Kd_2
+        # (rrrs-K21) root, with the sign of the branch
+        root_2 = branch_2*sqrt(disc_2)
+        # (rrrs-K27) from the origin of joint 3 to the connection point
+        x_3_x = Kd_2*inv_size_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
+        c_3 = inv_size_t_2*rrrs_platform_joint_offset_x*x_3_x
+        # (rrrs-K30) sine of the angle of joint 3 from its reference direction
+        s_3 = inv_size_t*inv_size_t_2*root_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        # (rrrs-V2) from joint 2 to the connection point, along the links
+        r_2_t = rrrs_platform_joint_offset_x*s_3
+        r_2_x = rrrs_joint3_offset_x + c_3*rrrs_platform_joint_offset_x
+        # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
+        inv_rho2_2 = 1.0/rho2_2
+        c_2 = inv_rho2_2*(Kc_2*Kd_2 + Ks_2*root_2)
+        # (rrrs-K23) sine of the angle of joint 2 from its reference direction
+        s_2 = inv_rho2_2*(Kc_2*root_2 - Kd_2*Ks_2)
+        # (rrrs-V4) velocity of the connection point per rate of joint 1
+        e_1_r2_x = c_2*s_3 - c_3*s_2
+        e_1_r2_y = -c_2*c_3 - s_2*s_3
+        # (rrrs-V3) from joint 1 to the connection point, along the links
+        r_1_r1_x = c_2*root_1 - s_2*xi_1_t
+        r_1_r1_y = -c_2*xi_1_t - root_1*s_2
+        # (rrrs-V4) velocity of the connection point per rate of joint 1
+        v_1_z = e_1_r2_x*(c_3*r_1_r1_y + r_1_r1_x*s_3) - e_1_r2_y*(c_3*r_1_r1_x - r_1_r1_y*s_3)
+        # (rrrs-V2) from joint 2 to the connection point, along the links
+        r_2_r0_x = c_3*r_2_x + r_2_t*s_3
+        r_2_r0_y = r_2_x*s_3 - c_3*r_2_t
+        # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
+        inv_rho2_1 = 1.0/rho2_1
+        c_1 = inv_rho2_1*py_1*root_1
+        # (rrrs-K9) sine of the angle of joint 1 from its reference direction
+        s_1 = inv_rho2_1*px_1*root_1
+        # (rrrs-V7) reciprocal vector 1
+        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*s_1 - c_1*rrrs_base_frame_xy
+        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*s_1 - c_1*rrrs_base_frame_yy
+        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*s_1 - c_1*rrrs_base_frame_zy
+        w_1_t = e_1_r2_x*s_1
+        w_1_t_2 = c_1*e_1_r2_x
+        axis_y_rrrs_axes3_in_base_x = (
+        e_1_r2_y*rrrs_base_frame_xx + rrrs_base_frame_xy*w_1_t + rrrs_base_frame_xz*w_1_t_2
+        )
+        axis_y_rrrs_axes3_in_base_y = (
+        e_1_r2_y*rrrs_base_frame_yx + rrrs_base_frame_yy*w_1_t + rrrs_base_frame_yz*w_1_t_2
+        )
+        axis_y_rrrs_axes3_in_base_z = (
+        e_1_r2_y*rrrs_base_frame_zx + rrrs_base_frame_zy*w_1_t + rrrs_base_frame_zz*w_1_t_2
+        )
+        axis_x_rrrs_axes3_x = (
+        axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
+            axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y
+        )
+        axis_x_rrrs_axes3_y = (
+        axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
+            axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z
+        )
+        axis_x_rrrs_axes3_z = (
+        axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
+            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
+        )
+        inv_v_1_z = 1.0/v_1_z
+        # (rrrs-V8) reciprocal vector 2
+        inv_r_2_r0_y = 1.0/r_2_r0_y
+        # (rrrs-V1) velocity of the connection point
+        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
+        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
+        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
+        S_dot_x = S_dot_t + t_dot_x
+        S_dot_y = S_dot_t_2 + t_dot_y
+        S_dot_z = S_dot_t_3 + t_dot_z
+        # (rrrs-V10) rate of joint 1
+        qd_2 = (
+        inv_r_2_r0_y*(S_dot_x*axis_x_rrrs_axes3_x + S_dot_y*axis_x_rrrs_axes3_y +
+            S_dot_z*axis_x_rrrs_axes3_z)
+        )
+        qd_3 = (
+        inv_rrrs_platform_joint_offset_x*(S_dot_x*axis_y_rrrs_axes3_in_base_x +
+            S_dot_y*axis_y_rrrs_axes3_in_base_y + S_dot_z*axis_y_rrrs_axes3_in_base_z +
+            qd_2*r_2_r0_x)
+        )
+        qd_1 = (
+        inv_v_1_z*(S_dot_x*axis_z_rrrs_axes3_in_base_x + S_dot_y*axis_z_rrrs_axes3_in_base_y +
+            S_dot_z*axis_z_rrrs_axes3_in_base_z)
+        )
+        # (rrrs-V13) angular velocity of link 1
+        omega_1_t = qd_1*s_2
+        omega_1_t_2 = c_2*qd_1
+        # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
+        zeta_2_x = omega_1_t_2*qd_2
+        zeta_2_y = omega_1_t*qd_2
+        # (rrrs-V15) angular velocity of link 2
+        omega_2_r0_x = omega_1_t_2*s_3 - c_3*omega_1_t
+        omega_2_r0_y = -c_3*omega_1_t_2 - omega_1_t*s_3
+        # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
+        zeta_2_r0_y = s_3*zeta_2_x - c_3*zeta_2_y
+        # (rrrs-A6) angular acceleration of link 3 at zero joint accelerations
+        beta_3_y = zeta_2_r0_y - omega_2_r0_x*qd_3
+        # (rrrs-V17) angular velocity of link 3
+        omega_3_z = qd_3 - qd_2
+        # (rrrs-A7) acceleration of the connection point at zero joint accelerations
+        bias_t = rrrs_joint2_offset_x*s_2
+        bias_t_2 = c_2*rrrs_joint2_offset_x
+        bias_t_3 = (
+        omega_2_r0_x*(-bias_t*s_3 - bias_t_2*c_3) - omega_2_r0_y*(bias_t_2*s_3 - bias_t*c_3)
+        )
+        bias_t_4 = c_3*rrrs_joint3_offset_x
+        bias_t_5 = rrrs_joint3_offset_x*s_3
+        bias_t_6 = bias_t_5*qd_2
+        bias_t_7 = bias_t_4*qd_2
+        bias_t_8 = bias_t_5*omega_2_r0_x - bias_t_4*omega_2_r0_y
+        bias_t_9 = omega_3_z*rrrs_platform_joint_offset_x
+        bias_t_10 = omega_2_r0_y*rrrs_platform_joint_offset_x
+        bias_x = (
+        bias_t_3*omega_2_r0_y + bias_t_8*omega_2_r0_y - bias_t_10*omega_2_r0_y - bias_t_7*qd_2 -
+            bias_t_9*omega_3_z
+        )
+        bias_y = (
+        bias_t_10*omega_2_r0_x - bias_t_3*omega_2_r0_x - bias_t_6*qd_2 - bias_t_8*omega_2_r0_x
+        )
+        bias_z = (
+        bias_t_5*(c_3*zeta_2_x + s_3*zeta_2_y) + bias_t_9*omega_2_r0_x -
+            beta_3_y*rrrs_platform_joint_offset_x - bias_t_4*zeta_2_r0_y - bias_t_6*omega_2_r0_y -
+            bias_t_7*omega_2_r0_x
+        )
+        # (rrrs-A2) acceleration of the connection point without its centripetal part
+        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
+        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
+        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
+        # (rrrs-A3) acceleration of the connection point
+        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
+        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
+        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
+        # (rrrs-A8) acceleration of the connection point left to the joint accelerations
+        rel_x = (
+        S_ddot_x*axis_x_rrrs_axes3_x + S_ddot_y*axis_x_rrrs_axes3_y + S_ddot_z*axis_x_rrrs_axes3_z
+            - bias_x
+        )
+        rel_y = (
+        S_ddot_x*axis_y_rrrs_axes3_in_base_x + S_ddot_y*axis_y_rrrs_axes3_in_base_y +
+            S_ddot_z*axis_y_rrrs_axes3_in_base_z - bias_y
+        )
+        rel_z = (
+        S_ddot_x*axis_z_rrrs_axes3_in_base_x + S_ddot_y*axis_z_rrrs_axes3_in_base_y +
+            S_ddot_z*axis_z_rrrs_axes3_in_base_z - bias_z
+        )
+        # (rrrs-A10) acceleration of joint 1
+        qdd_2 = inv_r_2_r0_y*rel_x
+        qdd_3 = inv_rrrs_platform_joint_offset_x*(rel_y + qdd_2*r_2_r0_x)
+        qdd_1 = inv_v_1_z*rel_z
+        ok = (
+        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) >
+            _TOLERANCE * _TOLERANCE * rho2_2_t) & (disc_2 >= 0.0) & (abs(v_1_z) > _TOLERANCE *
+            size) & (abs(-r_2_r0_y) > _TOLERANCE * size))
+        )
+        out_qdd[[0, 3, 6][leg]] = qdd_1
+        out_qdd[[1, 4, 7][leg]] = -qdd_2
+        out_qdd[[2, 5, 8][leg]] = qdd_3
+    return ok, (out_qdd,)
 
 
 # legs: 885 mul, 630 add, 12 div, 6 sqrt, 0 trig
-def _legs_before(c, X, V, A, f):
+def _run_legs(m, X, V, A):
+    sqrt = m.sqrt
+    shared, legs = m.constants("legs")
+    gravity_x, gravity_y, gravity_z = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -3498,347 +3983,351 @@ def _legs_before(c, X, V, A, f):
     alpha_x = A_3
     alpha_y = A_4
     alpha_z = A_5
-    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    return (
-    ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
-        t_dot_z, omega_x, omega_y, omega_z, t_ddot_x, t_ddot_y, t_ddot_z, alpha_x, alpha_y,
-        alpha_z,), (),
-    )
-
-
-def _legs_rrrs(c, k, x, s, f):
-    sqrt = f.sqrt
-    gravity_x, gravity_y, gravity_z = c
-    (
-    J_1_xx, J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, Kd_2_t, Kd_2_t_2, Sigma_2_xx,
-        Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2, g_r0_x,
-        g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
-        inv_rrrs_platform_joint_offset_x, inv_size_t, inv_size_t_2, rho2_2_t, rrrs_base_frame_xx,
-        rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-        rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
-        rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x,
-        rrrs_joint3_offset_x, rrrs_link3_mass, rrrs_platform_joint_offset_x,
-        rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, size, size_t_3,
-    ) = k
-    (
-    t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
-        t_dot_z, omega_x, omega_y, omega_z, t_ddot_x, t_ddot_y, t_ddot_z, alpha_x, alpha_y,
-        alpha_z,
-    ) = s
-    # (rrrs-K1) from the base point to the connection point
-    q_in_base_x = (
-    R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
-    )
-    q_in_base_y = (
-    R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
-    )
-    q_in_base_z = (
-    R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
-    )
-    S_x = q_in_base_x + t_x - rrrs_base_point_x
-    S_y = q_in_base_y + t_y - rrrs_base_point_y
-    S_z = q_in_base_z + t_z - rrrs_base_point_z
-    # (rrrs-K2) component along the reference direction
-    px_1 = S_x*rrrs_base_frame_xy + S_y*rrrs_base_frame_yy + S_z*rrrs_base_frame_zy
-    # (rrrs-K3) component across the reference direction
-    py_1 = S_x*rrrs_base_frame_xz + S_y*rrrs_base_frame_yz + S_z*rrrs_base_frame_zz
-    # (rrrs-K5) squared amplitude
-    rho2_1 = px_1*px_1 + py_1*py_1
-    # (rrrs-K7) root, with the sign of the branch
-    root_1 = branch_1*sqrt(rho2_1)
-    # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
-    xi_1_t = S_x*rrrs_base_frame_xx + S_y*rrrs_base_frame_yx + S_z*rrrs_base_frame_zx
-    # (rrrs-K12) from the origin of joint 2 to the connection point
-    x_2_z = xi_1_t - rrrs_joint2_offset_x
-    # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-    Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
-    Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
-    # (rrrs-K17) factor of the cosine in the equation of joint 2
-    Kc_2 = root_1*rrrs_joint3_offset_x
-    # (rrrs-K18) factor of the sine in the equation of joint 2
-    Ks_2 = rrrs_joint3_offset_x*x_2_z
-    # (rrrs-K19) squared amplitude
-    rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
-    # (rrrs-K20) discriminant
-    disc_2 = rho2_2 - Kd_2*Kd_2
-    # (rrrs-K21) root, with the sign of the branch
-    root_2 = branch_2*sqrt(disc_2)
-    # (rrrs-K27) from the origin of joint 3 to the connection point
-    x_3_x = Kd_2*inv_size_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
-    # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-    c_3 = inv_size_t_2*rrrs_platform_joint_offset_x*x_3_x
-    # (rrrs-K30) sine of the angle of joint 3 from its reference direction
-    s_3 = inv_size_t*inv_size_t_2*root_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
-    # (rrrs-V2) from joint 2 to the connection point, along the links
-    r_2_t = rrrs_platform_joint_offset_x*s_3
-    r_2_x = rrrs_joint3_offset_x + c_3*rrrs_platform_joint_offset_x
-    # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
-    inv_rho2_2 = 1.0/rho2_2
-    c_2 = inv_rho2_2*(Kc_2*Kd_2 + Ks_2*root_2)
-    # (rrrs-K23) sine of the angle of joint 2 from its reference direction
-    s_2 = inv_rho2_2*(Kc_2*root_2 - Kd_2*Ks_2)
-    # (rrrs-V4) velocity of the connection point per rate of joint 1
-    e_1_r2_x = c_2*s_3 - c_3*s_2
-    e_1_r2_y = -c_2*c_3 - s_2*s_3
-    # (rrrs-V3) from joint 1 to the connection point, along the links
-    r_1_r1_x = c_2*root_1 - s_2*xi_1_t
-    r_1_r1_y = -c_2*xi_1_t - root_1*s_2
-    # (rrrs-V4) velocity of the connection point per rate of joint 1
-    v_1_z = e_1_r2_x*(c_3*r_1_r1_y + r_1_r1_x*s_3) - e_1_r2_y*(c_3*r_1_r1_x - r_1_r1_y*s_3)
-    # (rrrs-V2) from joint 2 to the connection point, along the links
-    r_2_r0_x = c_3*r_2_x + r_2_t*s_3
-    r_2_r0_y = r_2_x*s_3 - c_3*r_2_t
-    # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
-    inv_rho2_1 = 1.0/rho2_1
-    c_1 = inv_rho2_1*py_1*root_1
-    # (rrrs-K9) sine of the angle of joint 1 from its reference direction
-    s_1 = inv_rho2_1*px_1*root_1
-    # (rrrs-V7) reciprocal vector 1
-    axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*s_1 - c_1*rrrs_base_frame_xy
-    axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*s_1 - c_1*rrrs_base_frame_yy
-    axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*s_1 - c_1*rrrs_base_frame_zy
-    w_1_t = e_1_r2_x*s_1
-    w_1_t_2 = c_1*e_1_r2_x
-    axis_y_rrrs_axes3_in_base_x = (
-    e_1_r2_y*rrrs_base_frame_xx + rrrs_base_frame_xy*w_1_t + rrrs_base_frame_xz*w_1_t_2
-    )
-    axis_y_rrrs_axes3_in_base_y = (
-    e_1_r2_y*rrrs_base_frame_yx + rrrs_base_frame_yy*w_1_t + rrrs_base_frame_yz*w_1_t_2
-    )
-    axis_y_rrrs_axes3_in_base_z = (
-    e_1_r2_y*rrrs_base_frame_zx + rrrs_base_frame_zy*w_1_t + rrrs_base_frame_zz*w_1_t_2
-    )
-    axis_x_rrrs_axes3_x = (
-    axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
-        axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y
-    )
-    axis_x_rrrs_axes3_y = (
-    axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
-        axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z
-    )
-    axis_x_rrrs_axes3_z = (
-    axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
-        axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
-    )
-    inv_v_1_z = 1.0/v_1_z
-    # (rrrs-V8) reciprocal vector 2
-    inv_r_2_r0_y = 1.0/r_2_r0_y
-    # (rrrs-V1) velocity of the connection point
-    S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-    S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-    S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-    S_dot_x = S_dot_t + t_dot_x
-    S_dot_y = S_dot_t_2 + t_dot_y
-    S_dot_z = S_dot_t_3 + t_dot_z
-    # (rrrs-V10) rate of joint 1
-    qd_2 = (
-    inv_r_2_r0_y*(S_dot_x*axis_x_rrrs_axes3_x + S_dot_y*axis_x_rrrs_axes3_y +
-        S_dot_z*axis_x_rrrs_axes3_z)
-    )
-    qd_3 = (
-    inv_rrrs_platform_joint_offset_x*(S_dot_x*axis_y_rrrs_axes3_in_base_x +
-        S_dot_y*axis_y_rrrs_axes3_in_base_y + S_dot_z*axis_y_rrrs_axes3_in_base_z + qd_2*r_2_r0_x)
-    )
-    qd_1 = (
-    inv_v_1_z*(S_dot_x*axis_z_rrrs_axes3_in_base_x + S_dot_y*axis_z_rrrs_axes3_in_base_y +
-        S_dot_z*axis_z_rrrs_axes3_in_base_z)
-    )
-    # (rrrs-V13) angular velocity of link 1
-    omega_1_t = qd_1*s_2
-    omega_1_t_2 = c_2*qd_1
-    # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_x = omega_1_t_2*qd_2
-    zeta_2_y = omega_1_t*qd_2
-    # (rrrs-V15) angular velocity of link 2
-    omega_2_r0_x = omega_1_t_2*s_3 - c_3*omega_1_t
-    omega_2_r0_y = -c_3*omega_1_t_2 - omega_1_t*s_3
-    # (rrrs-A5) angular acceleration of link 3 from the turning of axis 3
-    zeta_3_y = omega_2_r0_x*qd_3
-    # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_r0_y = s_3*zeta_2_x - c_3*zeta_2_y
-    # (rrrs-A6) angular acceleration of link 3 at zero joint accelerations
-    beta_3_y = zeta_2_r0_y - zeta_3_y
-    # (rrrs-V17) angular velocity of link 3
-    omega_3_z = qd_3 - qd_2
-    # (rrrs-V16) centripetal tensor of link 2
-    W_2_t = omega_1_t*omega_1_t
-    W_2_t_2 = omega_1_t_2*omega_1_t_2
-    W_2_t_3 = qd_2*qd_2
-    W_2_xy = omega_1_t*omega_1_t_2
-    # (rrrs-V18) centripetal tensor of link 3
-    W_3_t = omega_2_r0_x*omega_2_r0_x
-    W_3_t_2 = omega_2_r0_y*omega_2_r0_y
-    W_3_t_3 = omega_3_z*omega_3_z
-    W_3_xy = omega_2_r0_x*omega_2_r0_y
-    W_3_xz = omega_2_r0_x*omega_3_z
-    W_3_yz = omega_2_r0_y*omega_3_z
-    # (rrrs-A7) acceleration of the connection point at zero joint accelerations
-    bias_t = rrrs_joint2_offset_x*s_2
-    bias_t_2 = c_2*rrrs_joint2_offset_x
-    bias_t_3 = (
-    omega_2_r0_x*(-bias_t*s_3 - bias_t_2*c_3) - omega_2_r0_y*(bias_t_2*s_3 - bias_t*c_3)
-    )
-    bias_t_4 = c_3*rrrs_joint3_offset_x
-    bias_t_5 = rrrs_joint3_offset_x*s_3
-    bias_t_6 = bias_t_5*qd_2
-    bias_t_7 = bias_t_4*qd_2
-    bias_t_8 = bias_t_5*omega_2_r0_x - bias_t_4*omega_2_r0_y
-    bias_t_9 = omega_3_z*rrrs_platform_joint_offset_x
-    bias_t_10 = omega_2_r0_y*rrrs_platform_joint_offset_x
-    bias_x = (
-    bias_t_3*omega_2_r0_y + bias_t_8*omega_2_r0_y - bias_t_10*omega_2_r0_y - bias_t_7*qd_2 -
-        bias_t_9*omega_3_z
-    )
-    bias_y = (
-    bias_t_10*omega_2_r0_x - bias_t_3*omega_2_r0_x - bias_t_6*qd_2 - bias_t_8*omega_2_r0_x
-    )
-    bias_z = (
-    bias_t_5*(c_3*zeta_2_x + s_3*zeta_2_y) + bias_t_9*omega_2_r0_x -
-        beta_3_y*rrrs_platform_joint_offset_x - bias_t_4*zeta_2_r0_y - bias_t_6*omega_2_r0_y -
-        bias_t_7*omega_2_r0_x
-    )
-    # (rrrs-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-    g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
-    g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
-    g_r3_x = -c_2*g_r1_y - g_r0_z*s_2
-    g_r3_y = g_r1_y*s_2 - c_2*g_r0_z
-    # (rrrs-V7) reciprocal vector 1
-    w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_v_1_z
-    w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_v_1_z
-    w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_v_1_z
-    # (rrrs-V8) reciprocal vector 2
-    w_2_t = axis_x_rrrs_axes3_x*inv_r_2_r0_y
-    w_2_t_2 = axis_x_rrrs_axes3_y*inv_r_2_r0_y
-    w_2_t_3 = axis_x_rrrs_axes3_z*inv_r_2_r0_y
-    # (rrrs-A2) acceleration of the connection point without its centripetal part
-    a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-    a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-    a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-    # (rrrs-A3) acceleration of the connection point
-    S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-    S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-    S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-    S_ddot_tip_x = (
-    S_ddot_x*axis_x_rrrs_axes3_x + S_ddot_y*axis_x_rrrs_axes3_y + S_ddot_z*axis_x_rrrs_axes3_z
-    )
-    S_ddot_tip_y = (
-    S_ddot_x*axis_y_rrrs_axes3_in_base_x + S_ddot_y*axis_y_rrrs_axes3_in_base_y +
-        S_ddot_z*axis_y_rrrs_axes3_in_base_z
-    )
-    S_ddot_tip_z = (
-    S_ddot_x*axis_z_rrrs_axes3_in_base_x + S_ddot_y*axis_z_rrrs_axes3_in_base_y +
-        S_ddot_z*axis_z_rrrs_axes3_in_base_z
-    )
-    # (rrrs-A8) acceleration of the connection point left to the joint accelerations
-    rel_x = S_ddot_tip_x - bias_x
-    rel_y = S_ddot_tip_y - bias_y
-    rel_z = S_ddot_tip_z - bias_z
-    # (rrrs-A10) acceleration of joint 1
-    qdd_2 = inv_r_2_r0_y*rel_x
-    qdd_1 = inv_v_1_z*rel_z
-    # (rrrs-N9) acceleration of the reference point of link 3, less gravity
-    acc_3_x = (
-    S_ddot_tip_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
-        axis_x_rrrs_axes3_z*gravity_z
-    )
-    acc_3_y = (
-    S_ddot_tip_y - axis_y_rrrs_axes3_in_base_x*gravity_x - axis_y_rrrs_axes3_in_base_y*gravity_y -
-        axis_y_rrrs_axes3_in_base_z*gravity_z
-    )
-    acc_3_z = (
-    S_ddot_tip_z - axis_z_rrrs_axes3_in_base_x*gravity_x - axis_z_rrrs_axes3_in_base_y*gravity_y -
-        axis_z_rrrs_axes3_in_base_z*gravity_z
-    )
-    # (rrrs-A16) angular acceleration of link 1
-    alpha_1_t = qdd_1*s_2
-    alpha_1_t_2 = c_2*qdd_1
-    # (rrrs-A20) angular acceleration of link 2
-    alpha_2_x = zeta_2_x - alpha_1_t
-    alpha_2_y = -alpha_1_t_2 - zeta_2_y
-    # (rrrs-A22) acceleration tensor of link 2
-    B_2_xy = W_2_xy + qdd_2
-    B_2_yx = W_2_xy - qdd_2
-    B_2_zx = zeta_2_y - alpha_2_y
-    B_2_zy = alpha_2_x + zeta_2_x
-    # (rrrs-N36) inertia moment of the links that turn with link 2, about their reference points
-    mu_2_x = (
-    B_2_yx*J_2_xz + B_2_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) + g_r3_y*h_2_z - B_2_zx*J_2_xy
-        - Sigma_2_zz*alpha_1_t - g_r1_x*h_2_y
-    )
-    mu_2_y = (
-    B_2_zy*J_2_xy + g_r1_x*h_2_x - B_2_xy*J_2_yz - B_2_zx*Sigma_2_xx - J_2_xz*(W_2_t - W_2_t_3) -
-        Sigma_2_zz*alpha_1_t_2 - g_r3_x*h_2_z
-    )
-    mu_2_z = (
-    B_2_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + g_r3_x*h_2_y - B_2_xy*Sigma_2_yy -
-        J_2_xz*alpha_1_t - J_2_yz*alpha_1_t_2 - g_r3_y*h_2_x
-    )
-    # (rrrs-A24) angular acceleration of link 3
-    alpha_3_x = alpha_2_x*c_3 + omega_2_r0_y*qd_3 - alpha_2_y*s_3
-    alpha_3_y = alpha_2_x*s_3 + alpha_2_y*c_3 - zeta_3_y
-    alpha_3_z = inv_rrrs_platform_joint_offset_x*(rel_y + qdd_2*r_2_r0_x) - qdd_2
-    # (rrrs-A27) acceleration tensor of link 3
-    B_3_xy = W_3_xy - alpha_3_z
-    B_3_xz = W_3_xz + alpha_3_y
-    B_3_yx = W_3_xy + alpha_3_z
-    B_3_yz = W_3_yz - alpha_3_x
-    B_3_zx = W_3_xz - alpha_3_y
-    B_3_zy = W_3_yz + alpha_3_x
-    # (rrrs-N29) inertia moment of the links that turn with link 3, about their reference points
-    mu_3_x = (
-    B_3_yx*J_3_xz + B_3_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) + acc_3_z*h_3_y -
-        B_3_yz*Sigma_3_zz - B_3_zx*J_3_xy - acc_3_y*h_3_z
-    )
-    mu_3_y = (
-    B_3_xz*Sigma_3_zz + B_3_zy*J_3_xy + acc_3_x*h_3_z - B_3_xy*J_3_yz - B_3_zx*Sigma_3_xx -
-        J_3_xz*(W_3_t - W_3_t_3) - acc_3_z*h_3_x
-    )
-    mu_3_z = (
-    B_3_xz*J_3_yz + B_3_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + acc_3_y*h_3_x -
-        B_3_xy*Sigma_3_yy - B_3_yz*J_3_xz - acc_3_x*h_3_y
-    )
-    # (rrrs-N38) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-    N_2_x = mu_2_x + c_3*mu_3_x + mu_3_y*s_3
-    N_2_y = mu_2_y + c_3*mu_3_y - mu_3_x*s_3
-    N_2_z = mu_2_z + mu_3_z
-    # (rrrs-N45) inertia moment of the links that turn with link 1, about their reference points
-    mu_1_z = J_1_xx*qdd_1 - g_r1_x*h_1_y - g_r1_y*h_1_z
-    # (rrrs-N47) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-    N_1_z = mu_1_z - N_2_x*s_2 - N_2_y*c_2
-    # (rrrs-N52) force at the connection point that balances the leg's inertia and weight along all freedoms
-    G_t = inv_rrrs_platform_joint_offset_x*mu_3_z
-    # (rrrs-N55) leg force on the platform without actuation and without the mass at the connection point
-    c_x = (
-    h_3_x*(W_3_t_2 + W_3_t_3) - B_3_xy*h_3_y - B_3_xz*h_3_z - inv_r_2_r0_y*(G_t*r_2_r0_x - N_2_z)
-    )
-    c_y = h_3_y*(W_3_t + W_3_t_3) - G_t - B_3_yx*h_3_x - B_3_yz*h_3_z
-    c_z = h_3_z*(W_3_t + W_3_t_2) - B_3_zx*h_3_x - B_3_zy*h_3_y - N_1_z*inv_v_1_z
-    # (rrrs-N60) leg force on the platform without actuation, the last link's mass included
-    c_true_x = c_x - acc_3_x*rrrs_link3_mass
-    c_true_y = c_y - acc_3_y*rrrs_link3_mass
-    c_true_z = c_z - acc_3_z*rrrs_link3_mass
-    c_true_in_base_x = (
-    axis_x_rrrs_axes3_x*c_true_x + axis_y_rrrs_axes3_in_base_x*c_true_y +
-        axis_z_rrrs_axes3_in_base_x*c_true_z
-    )
-    c_true_in_base_y = (
-    axis_x_rrrs_axes3_y*c_true_x + axis_y_rrrs_axes3_in_base_y*c_true_y +
-        axis_z_rrrs_axes3_in_base_y*c_true_z
-    )
-    c_true_in_base_z = (
-    axis_x_rrrs_axes3_z*c_true_x + axis_y_rrrs_axes3_in_base_z*c_true_y +
-        axis_z_rrrs_axes3_in_base_z*c_true_z
-    )
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * rho2_2_t) & (disc_2 >= 0.0) & (abs(v_1_z) > _TOLERANCE * size) & (abs(-r_2_r0_y) > _TOLERANCE * size)
-    return (
-    ok, (), (c_true_in_base_x, c_true_in_base_y, c_true_in_base_z, w_1_t_3, w_1_t_4, w_1_t_5,
-        -w_2_t, -w_2_t_2, -w_2_t_3,),
-    )
+    ok = True
+    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    out_leg_force = m.zeros(9)
+    out_drive = m.zeros(18)
+    for leg, k in legs[0]:
+        (
+        J_1_xx, J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, Kd_2_t, Kd_2_t_2, Sigma_2_xx,
+            Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2,
+            g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
+            inv_rrrs_platform_joint_offset_x, inv_size_t, inv_size_t_2, rho2_2_t,
+            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_link3_mass,
+            rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
+            rrrs_platform_point_z, size, size_t_3,
+        ) = k
+        # (rrrs-K1) from the base point to the connection point
+        q_in_base_x = (
+        R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
+        )
+        q_in_base_y = (
+        R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
+        )
+        q_in_base_z = (
+        R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
+        )
+        S_x = q_in_base_x + t_x - rrrs_base_point_x
+        S_y = q_in_base_y + t_y - rrrs_base_point_y
+        S_z = q_in_base_z + t_z - rrrs_base_point_z
+        # (rrrs-K2) component along the reference direction
+        px_1 = S_x*rrrs_base_frame_xy + S_y*rrrs_base_frame_yy + S_z*rrrs_base_frame_zy
+        # (rrrs-K3) component across the reference direction
+        py_1 = S_x*rrrs_base_frame_xz + S_y*rrrs_base_frame_yz + S_z*rrrs_base_frame_zz
+        # (rrrs-K5) squared amplitude
+        rho2_1 = px_1*px_1 + py_1*py_1
+        # (rrrs-K7) root, with the sign of the branch
+        root_1 = branch_1*sqrt(rho2_1)
+        # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
+        xi_1_t = S_x*rrrs_base_frame_xx + S_y*rrrs_base_frame_yx + S_z*rrrs_base_frame_zx
+        # (rrrs-K12) from the origin of joint 2 to the connection point
+        x_2_z = xi_1_t - rrrs_joint2_offset_x
+        # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
+        Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
+        # (rrrs-K17) factor of the cosine in the equation of joint 2
+        Kc_2 = root_1*rrrs_joint3_offset_x
+        # (rrrs-K18) factor of the sine in the equation of joint 2
+        Ks_2 = rrrs_joint3_offset_x*x_2_z
+        # (rrrs-K19) squared amplitude
+        rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
+        # (rrrs-K20) discriminant
+        disc_2 = rho2_2 - Kd_2*Kd_2
+        # (rrrs-K21) root, with the sign of the branch
+        root_2 = branch_2*sqrt(disc_2)
+        # (rrrs-K27) from the origin of joint 3 to the connection point
+        x_3_x = Kd_2*inv_size_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
+        c_3 = inv_size_t_2*rrrs_platform_joint_offset_x*x_3_x
+        # (rrrs-K30) sine of the angle of joint 3 from its reference direction
+        s_3 = inv_size_t*inv_size_t_2*root_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        # (rrrs-V2) from joint 2 to the connection point, along the links
+        r_2_t = rrrs_platform_joint_offset_x*s_3
+        r_2_x = rrrs_joint3_offset_x + c_3*rrrs_platform_joint_offset_x
+        # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
+        inv_rho2_2 = 1.0/rho2_2
+        c_2 = inv_rho2_2*(Kc_2*Kd_2 + Ks_2*root_2)
+        # (rrrs-K23) sine of the angle of joint 2 from its reference direction
+        s_2 = inv_rho2_2*(Kc_2*root_2 - Kd_2*Ks_2)
+        # (rrrs-V4) velocity of the connection point per rate of joint 1
+        e_1_r2_x = c_2*s_3 - c_3*s_2
+        e_1_r2_y = -c_2*c_3 - s_2*s_3
+        # (rrrs-V3) from joint 1 to the connection point, along the links
+        r_1_r1_x = c_2*root_1 - s_2*xi_1_t
+        r_1_r1_y = -c_2*xi_1_t - root_1*s_2
+        # (rrrs-V4) velocity of the connection point per rate of joint 1
+        v_1_z = e_1_r2_x*(c_3*r_1_r1_y + r_1_r1_x*s_3) - e_1_r2_y*(c_3*r_1_r1_x - r_1_r1_y*s_3)
+        # (rrrs-V2) from joint 2 to the connection point, along the links
+        r_2_r0_x = c_3*r_2_x + r_2_t*s_3
+        r_2_r0_y = r_2_x*s_3 - c_3*r_2_t
+        # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
+        inv_rho2_1 = 1.0/rho2_1
+        c_1 = inv_rho2_1*py_1*root_1
+        # (rrrs-K9) sine of the angle of joint 1 from its reference direction
+        s_1 = inv_rho2_1*px_1*root_1
+        # (rrrs-V7) reciprocal vector 1
+        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*s_1 - c_1*rrrs_base_frame_xy
+        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*s_1 - c_1*rrrs_base_frame_yy
+        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*s_1 - c_1*rrrs_base_frame_zy
+        w_1_t = e_1_r2_x*s_1
+        w_1_t_2 = c_1*e_1_r2_x
+        axis_y_rrrs_axes3_in_base_x = (
+        e_1_r2_y*rrrs_base_frame_xx + rrrs_base_frame_xy*w_1_t + rrrs_base_frame_xz*w_1_t_2
+        )
+        axis_y_rrrs_axes3_in_base_y = (
+        e_1_r2_y*rrrs_base_frame_yx + rrrs_base_frame_yy*w_1_t + rrrs_base_frame_yz*w_1_t_2
+        )
+        axis_y_rrrs_axes3_in_base_z = (
+        e_1_r2_y*rrrs_base_frame_zx + rrrs_base_frame_zy*w_1_t + rrrs_base_frame_zz*w_1_t_2
+        )
+        axis_x_rrrs_axes3_x = (
+        axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
+            axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y
+        )
+        axis_x_rrrs_axes3_y = (
+        axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
+            axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z
+        )
+        axis_x_rrrs_axes3_z = (
+        axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
+            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
+        )
+        inv_v_1_z = 1.0/v_1_z
+        # (rrrs-V8) reciprocal vector 2
+        inv_r_2_r0_y = 1.0/r_2_r0_y
+        # (rrrs-V1) velocity of the connection point
+        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
+        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
+        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
+        S_dot_x = S_dot_t + t_dot_x
+        S_dot_y = S_dot_t_2 + t_dot_y
+        S_dot_z = S_dot_t_3 + t_dot_z
+        # (rrrs-V10) rate of joint 1
+        qd_2 = (
+        inv_r_2_r0_y*(S_dot_x*axis_x_rrrs_axes3_x + S_dot_y*axis_x_rrrs_axes3_y +
+            S_dot_z*axis_x_rrrs_axes3_z)
+        )
+        qd_3 = (
+        inv_rrrs_platform_joint_offset_x*(S_dot_x*axis_y_rrrs_axes3_in_base_x +
+            S_dot_y*axis_y_rrrs_axes3_in_base_y + S_dot_z*axis_y_rrrs_axes3_in_base_z +
+            qd_2*r_2_r0_x)
+        )
+        qd_1 = (
+        inv_v_1_z*(S_dot_x*axis_z_rrrs_axes3_in_base_x + S_dot_y*axis_z_rrrs_axes3_in_base_y +
+            S_dot_z*axis_z_rrrs_axes3_in_base_z)
+        )
+        # (rrrs-V13) angular velocity of link 1
+        omega_1_t = qd_1*s_2
+        omega_1_t_2 = c_2*qd_1
+        # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
+        zeta_2_x = omega_1_t_2*qd_2
+        zeta_2_y = omega_1_t*qd_2
+        # (rrrs-V15) angular velocity of link 2
+        omega_2_r0_x = omega_1_t_2*s_3 - c_3*omega_1_t
+        omega_2_r0_y = -c_3*omega_1_t_2 - omega_1_t*s_3
+        # (rrrs-A5) angular acceleration of link 3 from the turning of axis 3
+        zeta_3_y = omega_2_r0_x*qd_3
+        # (rrrs-A4) angular acceleration of link 2 from the turning of axis 2
+        zeta_2_r0_y = s_3*zeta_2_x - c_3*zeta_2_y
+        # (rrrs-A6) angular acceleration of link 3 at zero joint accelerations
+        beta_3_y = zeta_2_r0_y - zeta_3_y
+        # (rrrs-V17) angular velocity of link 3
+        omega_3_z = qd_3 - qd_2
+        # (rrrs-V16) centripetal tensor of link 2
+        W_2_t = omega_1_t*omega_1_t
+        W_2_t_2 = omega_1_t_2*omega_1_t_2
+        W_2_t_3 = qd_2*qd_2
+        W_2_xy = omega_1_t*omega_1_t_2
+        # (rrrs-V18) centripetal tensor of link 3
+        W_3_t = omega_2_r0_x*omega_2_r0_x
+        W_3_t_2 = omega_2_r0_y*omega_2_r0_y
+        W_3_t_3 = omega_3_z*omega_3_z
+        W_3_xy = omega_2_r0_x*omega_2_r0_y
+        W_3_xz = omega_2_r0_x*omega_3_z
+        W_3_yz = omega_2_r0_y*omega_3_z
+        # (rrrs-A7) acceleration of the connection point at zero joint accelerations
+        bias_t = rrrs_joint2_offset_x*s_2
+        bias_t_2 = c_2*rrrs_joint2_offset_x
+        bias_t_3 = (
+        omega_2_r0_x*(-bias_t*s_3 - bias_t_2*c_3) - omega_2_r0_y*(bias_t_2*s_3 - bias_t*c_3)
+        )
+        bias_t_4 = c_3*rrrs_joint3_offset_x
+        bias_t_5 = rrrs_joint3_offset_x*s_3
+        bias_t_6 = bias_t_5*qd_2
+        bias_t_7 = bias_t_4*qd_2
+        bias_t_8 = bias_t_5*omega_2_r0_x - bias_t_4*omega_2_r0_y
+        bias_t_9 = omega_3_z*rrrs_platform_joint_offset_x
+        bias_t_10 = omega_2_r0_y*rrrs_platform_joint_offset_x
+        bias_x = (
+        bias_t_3*omega_2_r0_y + bias_t_8*omega_2_r0_y - bias_t_10*omega_2_r0_y - bias_t_7*qd_2 -
+            bias_t_9*omega_3_z
+        )
+        bias_y = (
+        bias_t_10*omega_2_r0_x - bias_t_3*omega_2_r0_x - bias_t_6*qd_2 - bias_t_8*omega_2_r0_x
+        )
+        bias_z = (
+        bias_t_5*(c_3*zeta_2_x + s_3*zeta_2_y) + bias_t_9*omega_2_r0_x -
+            beta_3_y*rrrs_platform_joint_offset_x - bias_t_4*zeta_2_r0_y - bias_t_6*omega_2_r0_y -
+            bias_t_7*omega_2_r0_x
+        )
+        # (rrrs-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
+        g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
+        g_r3_x = -c_2*g_r1_y - g_r0_z*s_2
+        g_r3_y = g_r1_y*s_2 - c_2*g_r0_z
+        # (rrrs-V7) reciprocal vector 1
+        w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_v_1_z
+        w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_v_1_z
+        w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_v_1_z
+        # (rrrs-V8) reciprocal vector 2
+        w_2_t = axis_x_rrrs_axes3_x*inv_r_2_r0_y
+        w_2_t_2 = axis_x_rrrs_axes3_y*inv_r_2_r0_y
+        w_2_t_3 = axis_x_rrrs_axes3_z*inv_r_2_r0_y
+        # (rrrs-A2) acceleration of the connection point without its centripetal part
+        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
+        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
+        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
+        # (rrrs-A3) acceleration of the connection point
+        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
+        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
+        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
+        S_ddot_tip_x = (
+        S_ddot_x*axis_x_rrrs_axes3_x + S_ddot_y*axis_x_rrrs_axes3_y + S_ddot_z*axis_x_rrrs_axes3_z
+        )
+        S_ddot_tip_y = (
+        S_ddot_x*axis_y_rrrs_axes3_in_base_x + S_ddot_y*axis_y_rrrs_axes3_in_base_y +
+            S_ddot_z*axis_y_rrrs_axes3_in_base_z
+        )
+        S_ddot_tip_z = (
+        S_ddot_x*axis_z_rrrs_axes3_in_base_x + S_ddot_y*axis_z_rrrs_axes3_in_base_y +
+            S_ddot_z*axis_z_rrrs_axes3_in_base_z
+        )
+        # (rrrs-A8) acceleration of the connection point left to the joint accelerations
+        rel_x = S_ddot_tip_x - bias_x
+        rel_y = S_ddot_tip_y - bias_y
+        rel_z = S_ddot_tip_z - bias_z
+        # (rrrs-A10) acceleration of joint 1
+        qdd_2 = inv_r_2_r0_y*rel_x
+        qdd_1 = inv_v_1_z*rel_z
+        # (rrrs-N9) acceleration of the reference point of link 3, less gravity
+        acc_3_x = (
+        S_ddot_tip_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
+            axis_x_rrrs_axes3_z*gravity_z
+        )
+        acc_3_y = (
+        S_ddot_tip_y - axis_y_rrrs_axes3_in_base_x*gravity_x -
+            axis_y_rrrs_axes3_in_base_y*gravity_y - axis_y_rrrs_axes3_in_base_z*gravity_z
+        )
+        acc_3_z = (
+        S_ddot_tip_z - axis_z_rrrs_axes3_in_base_x*gravity_x -
+            axis_z_rrrs_axes3_in_base_y*gravity_y - axis_z_rrrs_axes3_in_base_z*gravity_z
+        )
+        # (rrrs-A16) angular acceleration of link 1
+        alpha_1_t = qdd_1*s_2
+        alpha_1_t_2 = c_2*qdd_1
+        # (rrrs-A20) angular acceleration of link 2
+        alpha_2_x = zeta_2_x - alpha_1_t
+        alpha_2_y = -alpha_1_t_2 - zeta_2_y
+        # (rrrs-A22) acceleration tensor of link 2
+        B_2_xy = W_2_xy + qdd_2
+        B_2_yx = W_2_xy - qdd_2
+        B_2_zx = zeta_2_y - alpha_2_y
+        B_2_zy = alpha_2_x + zeta_2_x
+        # (rrrs-N36) inertia moment of the links that turn with link 2, about their reference points
+        mu_2_x = (
+        B_2_yx*J_2_xz + B_2_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) + g_r3_y*h_2_z -
+            B_2_zx*J_2_xy - Sigma_2_zz*alpha_1_t - g_r1_x*h_2_y
+        )
+        mu_2_y = (
+        B_2_zy*J_2_xy + g_r1_x*h_2_x - B_2_xy*J_2_yz - B_2_zx*Sigma_2_xx - J_2_xz*(W_2_t -
+            W_2_t_3) - Sigma_2_zz*alpha_1_t_2 - g_r3_x*h_2_z
+        )
+        mu_2_z = (
+        B_2_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + g_r3_x*h_2_y - B_2_xy*Sigma_2_yy -
+            J_2_xz*alpha_1_t - J_2_yz*alpha_1_t_2 - g_r3_y*h_2_x
+        )
+        # (rrrs-A24) angular acceleration of link 3
+        alpha_3_x = alpha_2_x*c_3 + omega_2_r0_y*qd_3 - alpha_2_y*s_3
+        alpha_3_y = alpha_2_x*s_3 + alpha_2_y*c_3 - zeta_3_y
+        alpha_3_z = inv_rrrs_platform_joint_offset_x*(rel_y + qdd_2*r_2_r0_x) - qdd_2
+        # (rrrs-A27) acceleration tensor of link 3
+        B_3_xy = W_3_xy - alpha_3_z
+        B_3_xz = W_3_xz + alpha_3_y
+        B_3_yx = W_3_xy + alpha_3_z
+        B_3_yz = W_3_yz - alpha_3_x
+        B_3_zx = W_3_xz - alpha_3_y
+        B_3_zy = W_3_yz + alpha_3_x
+        # (rrrs-N29) inertia moment of the links that turn with link 3, about their reference points
+        mu_3_x = (
+        B_3_yx*J_3_xz + B_3_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) + acc_3_z*h_3_y -
+            B_3_yz*Sigma_3_zz - B_3_zx*J_3_xy - acc_3_y*h_3_z
+        )
+        mu_3_y = (
+        B_3_xz*Sigma_3_zz + B_3_zy*J_3_xy + acc_3_x*h_3_z - B_3_xy*J_3_yz - B_3_zx*Sigma_3_xx -
+            J_3_xz*(W_3_t - W_3_t_3) - acc_3_z*h_3_x
+        )
+        mu_3_z = (
+        B_3_xz*J_3_yz + B_3_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + acc_3_y*h_3_x -
+            B_3_xy*Sigma_3_yy - B_3_yz*J_3_xz - acc_3_x*h_3_y
+        )
+        # (rrrs-N38) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        N_2_x = mu_2_x + c_3*mu_3_x + mu_3_y*s_3
+        N_2_y = mu_2_y + c_3*mu_3_y - mu_3_x*s_3
+        N_2_z = mu_2_z + mu_3_z
+        # (rrrs-N45) inertia moment of the links that turn with link 1, about their reference points
+        mu_1_z = J_1_xx*qdd_1 - g_r1_x*h_1_y - g_r1_y*h_1_z
+        # (rrrs-N47) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        N_1_z = mu_1_z - N_2_x*s_2 - N_2_y*c_2
+        # (rrrs-N52) force at the connection point that balances the leg's inertia and weight along all freedoms
+        G_t = inv_rrrs_platform_joint_offset_x*mu_3_z
+        # (rrrs-N55) leg force on the platform without actuation and without the mass at the connection point
+        c_x = (
+        h_3_x*(W_3_t_2 + W_3_t_3) - B_3_xy*h_3_y - B_3_xz*h_3_z - inv_r_2_r0_y*(G_t*r_2_r0_x -
+            N_2_z)
+        )
+        c_y = h_3_y*(W_3_t + W_3_t_3) - G_t - B_3_yx*h_3_x - B_3_yz*h_3_z
+        c_z = h_3_z*(W_3_t + W_3_t_2) - B_3_zx*h_3_x - B_3_zy*h_3_y - N_1_z*inv_v_1_z
+        # (rrrs-N60) leg force on the platform without actuation, the last link's mass included
+        c_true_x = c_x - acc_3_x*rrrs_link3_mass
+        c_true_y = c_y - acc_3_y*rrrs_link3_mass
+        c_true_z = c_z - acc_3_z*rrrs_link3_mass
+        c_true_in_base_x = (
+        axis_x_rrrs_axes3_x*c_true_x + axis_y_rrrs_axes3_in_base_x*c_true_y +
+            axis_z_rrrs_axes3_in_base_x*c_true_z
+        )
+        c_true_in_base_y = (
+        axis_x_rrrs_axes3_y*c_true_x + axis_y_rrrs_axes3_in_base_y*c_true_y +
+            axis_z_rrrs_axes3_in_base_y*c_true_z
+        )
+        c_true_in_base_z = (
+        axis_x_rrrs_axes3_z*c_true_x + axis_y_rrrs_axes3_in_base_z*c_true_y +
+            axis_z_rrrs_axes3_in_base_z*c_true_z
+        )
+        ok = (
+        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) >
+            _TOLERANCE * _TOLERANCE * rho2_2_t) & (disc_2 >= 0.0) & (abs(v_1_z) > _TOLERANCE *
+            size) & (abs(-r_2_r0_y) > _TOLERANCE * size))
+        )
+        out_leg_force[[0, 3, 6][leg]] = c_true_in_base_x
+        out_leg_force[[1, 4, 7][leg]] = c_true_in_base_y
+        out_leg_force[[2, 5, 8][leg]] = c_true_in_base_z
+        out_drive[[0, 6, 12][leg]] = w_1_t_3
+        out_drive[[1, 7, 13][leg]] = w_1_t_4
+        out_drive[[2, 8, 14][leg]] = w_1_t_5
+        out_drive[[3, 9, 15][leg]] = -w_2_t
+        out_drive[[4, 10, 16][leg]] = -w_2_t_2
+        out_drive[[5, 11, 17][leg]] = -w_2_t_3
+    return ok, (out_leg_force, out_drive,)
 
 
 # potential: 240 mul, 171 add, 6 div, 6 sqrt, 0 trig
-def _potential_before(c, X, f):
-    gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star = c
+def _run_potential(m, X):
+    sqrt = m.sqrt
+    shared, legs = m.constants("potential")
+    gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -3873,117 +4362,117 @@ def _potential_before(c, X, f):
     R_zx = quaternion_xz - quaternion_wy
     R_zy = quaternion_wx + quaternion_yz
     R_zz = 1.0 - quaternion_xx - quaternion_yy
+    ok = True
+    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    out_potential = m.zeros(1)
     # (V1) potential energy
     potential_t_3 = (
     gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + m_star*t_x) +
         gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
         gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + m_star*t_z)
     )
-    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    return (
-    ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, potential_t_3,), (),
-    )
-
-
-def _potential_rrrs(c, k, x, s, f):
-    sqrt = f.sqrt
-    (
-    Kd_2_t, Kd_2_t_2, b_r0_x, b_r0_y, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_1_x, h_1_y,
-        h_1_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, inv_size_t, inv_size_t_2, potential_t,
-        potential_t_2, rho2_2_t, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
-        rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-        rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-        rrrs_base_point_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_link1_mass,
-        rrrs_link2_mass, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-        rrrs_platform_point_y, rrrs_platform_point_z, size_t_3,
-    ) = k
-    t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
-    # (rrrs-K1) from the base point to the connection point
-    S_x = (
-    t_x + R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z -
-        rrrs_base_point_x
-    )
-    S_y = (
-    t_y + R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z -
-        rrrs_base_point_y
-    )
-    S_z = (
-    t_z + R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z -
-        rrrs_base_point_z
-    )
-    # (rrrs-K2) component along the reference direction
-    px_1 = S_x*rrrs_base_frame_xy + S_y*rrrs_base_frame_yy + S_z*rrrs_base_frame_zy
-    # (rrrs-K3) component across the reference direction
-    py_1 = S_x*rrrs_base_frame_xz + S_y*rrrs_base_frame_yz + S_z*rrrs_base_frame_zz
-    # (rrrs-K5) squared amplitude
-    rho2_1 = px_1*px_1 + py_1*py_1
-    # (rrrs-K7) root, with the sign of the branch
-    root_1 = branch_1*sqrt(rho2_1)
-    # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
-    xi_1_t = S_x*rrrs_base_frame_xx + S_y*rrrs_base_frame_yx + S_z*rrrs_base_frame_zx
-    # (rrrs-K12) from the origin of joint 2 to the connection point
-    x_2_z = xi_1_t - rrrs_joint2_offset_x
-    # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-    Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
-    Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
-    # (rrrs-K17) factor of the cosine in the equation of joint 2
-    Kc_2 = root_1*rrrs_joint3_offset_x
-    # (rrrs-K18) factor of the sine in the equation of joint 2
-    Ks_2 = rrrs_joint3_offset_x*x_2_z
-    # (rrrs-K19) squared amplitude
-    rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
-    # (rrrs-K20) discriminant
-    disc_2 = rho2_2 - Kd_2*Kd_2
-    # (rrrs-K21) root, with the sign of the branch
-    root_2 = branch_2*sqrt(disc_2)
-    # (rrrs-K27) from the origin of joint 3 to the connection point
-    x_3_x = Kd_2*inv_size_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
-    # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-    c_3 = inv_size_t_2*rrrs_platform_joint_offset_x*x_3_x
-    # (rrrs-K30) sine of the angle of joint 3 from its reference direction
-    s_3 = inv_size_t*inv_size_t_2*root_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
-    # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
-    inv_rho2_2 = 1.0/rho2_2
-    c_2 = inv_rho2_2*(Kc_2*Kd_2 + Ks_2*root_2)
-    # (rrrs-K23) sine of the angle of joint 2 from its reference direction
-    s_2 = inv_rho2_2*(Kc_2*root_2 - Kd_2*Ks_2)
-    # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
-    inv_rho2_1 = 1.0/rho2_1
-    c_1 = inv_rho2_1*py_1*root_1
-    # (rrrs-K9) sine of the angle of joint 1 from its reference direction
-    s_1 = inv_rho2_1*px_1*root_1
-    # (V1) potential energy
-    b_r1_x = b_r0_y*s_1 - b_r0_x*c_1
-    b_r1_y = -b_r0_x*s_1 - b_r0_y*c_1
-    # (rrrs-G8) first moment of link 3 about the connection point
-    h_3_r0_x = c_3*h_3_x + h_3_y*s_3
-    h_3_r0_y = c_3*h_3_y - h_3_x*s_3
-    # (V1) potential energy
-    potential_t_4 = (
-    (-c_1*g_r0_y - g_r0_x*s_1)*(b_r1_y*rrrs_link1_mass + b_r1_y*rrrs_link2_mass + h_2_y*s_2 +
-        h_3_r0_y*s_2 - h_1_y - c_2*h_2_x - c_2*h_3_r0_x)
-    )
-    potential_t_5 = (
-    potential_t_4 + g_r0_z*(h_1_x + potential_t + potential_t_2 - c_2*h_2_y - c_2*h_3_r0_y -
-        h_2_x*s_2 - h_3_r0_x*s_2) + (g_r0_y*s_1 - c_1*g_r0_x)*(h_1_z + h_2_z + h_3_z +
-        b_r1_x*rrrs_link1_mass + b_r1_x*rrrs_link2_mass)
-    )
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * rho2_2_t) & (disc_2 >= 0.0)
-    return (ok, (potential_t_5,), (),)
-
-
-def _potential_after(c, s, t, f):
-    potential_t_3, = s
-    total_rrrs, = t
+    sums = [0.0] * 1
+    for leg, k in legs[0]:
+        (
+        Kd_2_t, Kd_2_t_2, b_r0_x, b_r0_y, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_1_x,
+            h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, inv_size_t, inv_size_t_2,
+            potential_t, potential_t_2, rho2_2_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
+            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+            rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
+            rrrs_link1_mass, rrrs_link2_mass, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
+            rrrs_platform_point_y, rrrs_platform_point_z, size_t_3,
+        ) = k
+        # (rrrs-K1) from the base point to the connection point
+        S_x = (
+        t_x + R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
+            - rrrs_base_point_x
+        )
+        S_y = (
+        t_y + R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
+            - rrrs_base_point_y
+        )
+        S_z = (
+        t_z + R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
+            - rrrs_base_point_z
+        )
+        # (rrrs-K2) component along the reference direction
+        px_1 = S_x*rrrs_base_frame_xy + S_y*rrrs_base_frame_yy + S_z*rrrs_base_frame_zy
+        # (rrrs-K3) component across the reference direction
+        py_1 = S_x*rrrs_base_frame_xz + S_y*rrrs_base_frame_yz + S_z*rrrs_base_frame_zz
+        # (rrrs-K5) squared amplitude
+        rho2_1 = px_1*px_1 + py_1*py_1
+        # (rrrs-K7) root, with the sign of the branch
+        root_1 = branch_1*sqrt(rho2_1)
+        # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
+        xi_1_t = S_x*rrrs_base_frame_xx + S_y*rrrs_base_frame_yx + S_z*rrrs_base_frame_zx
+        # (rrrs-K12) from the origin of joint 2 to the connection point
+        x_2_z = xi_1_t - rrrs_joint2_offset_x
+        # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
+        Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
+        # (rrrs-K17) factor of the cosine in the equation of joint 2
+        Kc_2 = root_1*rrrs_joint3_offset_x
+        # (rrrs-K18) factor of the sine in the equation of joint 2
+        Ks_2 = rrrs_joint3_offset_x*x_2_z
+        # (rrrs-K19) squared amplitude
+        rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
+        # (rrrs-K20) discriminant
+        disc_2 = rho2_2 - Kd_2*Kd_2
+        # (rrrs-K21) root, with the sign of the branch
+        root_2 = branch_2*sqrt(disc_2)
+        # (rrrs-K27) from the origin of joint 3 to the connection point
+        x_3_x = Kd_2*inv_size_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
+        c_3 = inv_size_t_2*rrrs_platform_joint_offset_x*x_3_x
+        # (rrrs-K30) sine of the angle of joint 3 from its reference direction
+        s_3 = inv_size_t*inv_size_t_2*root_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
+        inv_rho2_2 = 1.0/rho2_2
+        c_2 = inv_rho2_2*(Kc_2*Kd_2 + Ks_2*root_2)
+        # (rrrs-K23) sine of the angle of joint 2 from its reference direction
+        s_2 = inv_rho2_2*(Kc_2*root_2 - Kd_2*Ks_2)
+        # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
+        inv_rho2_1 = 1.0/rho2_1
+        c_1 = inv_rho2_1*py_1*root_1
+        # (rrrs-K9) sine of the angle of joint 1 from its reference direction
+        s_1 = inv_rho2_1*px_1*root_1
+        # (V1) potential energy
+        b_r1_x = b_r0_y*s_1 - b_r0_x*c_1
+        b_r1_y = -b_r0_x*s_1 - b_r0_y*c_1
+        # (rrrs-G8) first moment of link 3 about the connection point
+        h_3_r0_x = c_3*h_3_x + h_3_y*s_3
+        h_3_r0_y = c_3*h_3_y - h_3_x*s_3
+        # (V1) potential energy
+        potential_t_4 = (
+        (-c_1*g_r0_y - g_r0_x*s_1)*(b_r1_y*rrrs_link1_mass + b_r1_y*rrrs_link2_mass + h_2_y*s_2 +
+            h_3_r0_y*s_2 - h_1_y - c_2*h_2_x - c_2*h_3_r0_x)
+        )
+        potential_t_5 = (
+        potential_t_4 + g_r0_z*(h_1_x + potential_t + potential_t_2 - c_2*h_2_y - c_2*h_3_r0_y -
+            h_2_x*s_2 - h_3_r0_x*s_2) + (g_r0_y*s_1 - c_1*g_r0_x)*(h_1_z + h_2_z + h_3_z +
+            b_r1_x*rrrs_link1_mass + b_r1_x*rrrs_link2_mass)
+        )
+        ok = (
+        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) >
+            _TOLERANCE * _TOLERANCE * rho2_2_t) & (disc_2 >= 0.0))
+        )
+        sums = m.added(sums, leg, (
+        potential_t_5,
+        ))
+    total_rrrs, = sums
     # (V1) potential energy
     potential = -potential_t_3 - total_rrrs
-    ok = True
-    return (ok, (potential,),)
+    out_potential[0] = potential
+    return ok, (out_potential,)
 
 
 # condition: 343 mul, 192 add, 12 div, 13 sqrt, 0 trig
-def _condition_before(c, X, f):
-    legs_size, = c
+def _run_condition(m, X):
+    sqrt = m.sqrt
+    least = m.least
+    shared, legs = m.constants("condition")
+    b_c_x, b_c_y, b_c_z, legs_size, spread_t = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -4018,1091 +4507,703 @@ def _condition_before(c, X, f):
     R_zx = quaternion_xz - quaternion_wy
     R_zy = quaternion_wx + quaternion_yz
     R_zz = 1.0 - quaternion_xx - quaternion_yy
-    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    return (
-    ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz,), (legs_size,),
-    )
-
-
-def _condition_rrrs(c, k, x, s, f):
-    sqrt = f.sqrt
-    least = f.least
-    b_c_x, b_c_y, b_c_z = c
-    (
-    Kd_2_t, Kd_2_t_2, branch_1, branch_2, inv_rho2_2_t_4, inv_size, inv_size_t, inv_size_t_2,
-        inv_size_t_3, rho2_2_t, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
-        rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-        rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-        rrrs_base_point_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
-        rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
-        rrrs_platform_point_z, size, size_t_3,
-    ) = k
-    t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
-    # (rrrs-K1) from the base point to the connection point
-    q_in_base_x = (
-    R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
-    )
-    q_in_base_y = (
-    R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
-    )
-    q_in_base_z = (
-    R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
-    )
-    S_x = q_in_base_x + t_x - rrrs_base_point_x
-    S_y = q_in_base_y + t_y - rrrs_base_point_y
-    S_z = q_in_base_z + t_z - rrrs_base_point_z
-    # (rrrs-K2) component along the reference direction
-    px_1 = S_x*rrrs_base_frame_xy + S_y*rrrs_base_frame_yy + S_z*rrrs_base_frame_zy
-    # (rrrs-K3) component across the reference direction
-    py_1 = S_x*rrrs_base_frame_xz + S_y*rrrs_base_frame_yz + S_z*rrrs_base_frame_zz
-    # (rrrs-K5) squared amplitude
-    rho2_1 = px_1*px_1 + py_1*py_1
-    # (rrrs-K7) root, with the sign of the branch
-    root_1 = branch_1*sqrt(rho2_1)
-    # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
-    xi_1_t = S_x*rrrs_base_frame_xx + S_y*rrrs_base_frame_yx + S_z*rrrs_base_frame_zx
-    # (rrrs-K12) from the origin of joint 2 to the connection point
-    x_2_z = xi_1_t - rrrs_joint2_offset_x
-    # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-    Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
-    Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
-    # (rrrs-K17) factor of the cosine in the equation of joint 2
-    Kc_2 = root_1*rrrs_joint3_offset_x
-    # (rrrs-K18) factor of the sine in the equation of joint 2
-    Ks_2 = rrrs_joint3_offset_x*x_2_z
-    # (rrrs-K19) squared amplitude
-    rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
-    # (rrrs-K20) discriminant
-    disc_2 = rho2_2 - Kd_2*Kd_2
-    # (rrrs-K21) root, with the sign of the branch
-    root_2 = branch_2*sqrt(disc_2)
-    # (rrrs-K27) from the origin of joint 3 to the connection point
-    x_3_x = Kd_2*inv_size_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
-    # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-    c_3 = inv_size_t_2*rrrs_platform_joint_offset_x*x_3_x
-    # (rrrs-K30) sine of the angle of joint 3 from its reference direction
-    s_3 = inv_size_t*inv_size_t_2*root_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
-    # (rrrs-V2) from joint 2 to the connection point, along the links
-    r_2_x = rrrs_joint3_offset_x + c_3*rrrs_platform_joint_offset_x
-    # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
-    inv_rho2_2 = 1.0/rho2_2
-    c_2 = inv_rho2_2*(Kc_2*Kd_2 + Ks_2*root_2)
-    # (rrrs-K23) sine of the angle of joint 2 from its reference direction
-    s_2 = inv_rho2_2*(Kc_2*root_2 - Kd_2*Ks_2)
-    # (rrrs-V4) velocity of the connection point per rate of joint 1
-    e_1_r2_x = c_2*s_3 - c_3*s_2
-    e_1_r2_y = -c_2*c_3 - s_2*s_3
-    # (rrrs-V3) from joint 1 to the connection point, along the links
-    r_1_r1_x = c_2*root_1 - s_2*xi_1_t
-    r_1_r1_y = -c_2*xi_1_t - root_1*s_2
-    # (rrrs-V4) velocity of the connection point per rate of joint 1
-    v_1_z = e_1_r2_x*(c_3*r_1_r1_y + r_1_r1_x*s_3) - e_1_r2_y*(c_3*r_1_r1_x - r_1_r1_y*s_3)
-    # (rrrs-V2) from joint 2 to the connection point, along the links
-    r_2_r0_y = r_2_x*s_3 - c_3*rrrs_platform_joint_offset_x*s_3
-    # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
-    inv_rho2_1 = 1.0/rho2_1
-    c_1 = inv_rho2_1*py_1*root_1
-    # (rrrs-K9) sine of the angle of joint 1 from its reference direction
-    s_1 = inv_rho2_1*px_1*root_1
-    # (rrrs-V7) reciprocal vector 1
-    axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*s_1 - c_1*rrrs_base_frame_xy
-    axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*s_1 - c_1*rrrs_base_frame_yy
-    axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*s_1 - c_1*rrrs_base_frame_zy
-    w_1_t = e_1_r2_x*s_1
-    w_1_t_2 = c_1*e_1_r2_x
-    axis_y_rrrs_axes3_in_base_x = (
-    e_1_r2_y*rrrs_base_frame_xx + rrrs_base_frame_xy*w_1_t + rrrs_base_frame_xz*w_1_t_2
-    )
-    axis_y_rrrs_axes3_in_base_y = (
-    e_1_r2_y*rrrs_base_frame_yx + rrrs_base_frame_yy*w_1_t + rrrs_base_frame_yz*w_1_t_2
-    )
-    axis_y_rrrs_axes3_in_base_z = (
-    e_1_r2_y*rrrs_base_frame_zx + rrrs_base_frame_zy*w_1_t + rrrs_base_frame_zz*w_1_t_2
-    )
-    inv_v_1_z = 1.0/v_1_z
-    # (rrrs-V8) reciprocal vector 2
-    inv_r_2_r0_y = 1.0/r_2_r0_y
-    # (rrrs-V7) reciprocal vector 1
-    w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_v_1_z
-    w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_v_1_z
-    w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_v_1_z
-    # (M8) moment of the column's unit force about the platform origin
-    H_a_1_x = q_in_base_y*w_1_t_5 - q_in_base_z*w_1_t_4
-    H_a_1_y = q_in_base_z*w_1_t_3 - q_in_base_x*w_1_t_5
-    H_a_1_z = q_in_base_x*w_1_t_4 - q_in_base_y*w_1_t_3
-    # (rrrs-V8) reciprocal vector 2
-    w_2_t = (
-    inv_r_2_r0_y*(axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
-        axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y)
-    )
-    w_2_t_2 = (
-    inv_r_2_r0_y*(axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
-        axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z)
-    )
-    w_2_t_3 = (
-    inv_r_2_r0_y*(axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
-        axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x)
-    )
-    # (M9) moment of the column's unit force about the platform origin
-    H_a_2_x = q_in_base_z*w_2_t_2 - q_in_base_y*w_2_t_3
-    H_a_2_y = q_in_base_x*w_2_t_3 - q_in_base_z*w_2_t
-    H_a_2_z = q_in_base_y*w_2_t - q_in_base_x*w_2_t_2
-    # (C2) rms distance of the platform points from their centroid
-    spread_t_2 = b_c_x - rrrs_platform_point_x
-    spread_t_3 = b_c_y - rrrs_platform_point_y
-    spread_t_4 = b_c_z - rrrs_platform_point_z
-    spread_t_5 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3 + spread_t_4*spread_t_4
-    # (rrrs-K5) squared amplitude
-    pivot_size = abs(rho2_1)
-    # (rrrs-K19) squared amplitude
-    pivot_size_2 = abs(rho2_2)
-    # (rrrs-V7) reciprocal vector 1
-    pivot_size_3 = abs(v_1_z)
-    pivot_size_4 = abs(r_2_r0_y)
-    # (rrrs-N52) force at the connection point that balances the leg's inertia and weight along all freedoms
-    least_pivots = (
-    least(least(least(sqrt(inv_rho2_2_t_4*pivot_size_2), inv_size*pivot_size_3),
-        inv_size*pivot_size_4), sqrt(inv_size_t_3*pivot_size))
-    )
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * rho2_2_t) & (disc_2 >= 0.0) & (abs(v_1_z) > _TOLERANCE * size) & (abs(-r_2_r0_y) > _TOLERANCE * size)
-    return (
-    ok, (spread_t_5,), (w_1_t_3, w_1_t_4, w_1_t_5, H_a_1_x, H_a_1_y, H_a_1_z, -w_2_t, -w_2_t_2,
-        -w_2_t_3, H_a_2_x, H_a_2_y, H_a_2_z, least_pivots, disc_2,),
-    )
-
-
-def _condition_after(c, s, t, f):
-    sqrt = f.sqrt
-    spread_t, = c
-    total_rrrs, = t
+    valid = True
+    reached = True
+    clear = True
+    valid = valid & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    out_H = m.zeros(36)
+    out_lengths = m.zeros(2)
+    out_pivots = m.zeros(3)
+    out_reach = m.zeros(3)
+    out_lengths[1] = legs_size
+    sums = [0.0] * 1
+    for leg, k in legs[0]:
+        (
+        Kd_2_t, Kd_2_t_2, branch_1, branch_2, inv_rho2_2_t_4, inv_size, inv_size_t, inv_size_t_2,
+            inv_size_t_3, rho2_2_t, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+            rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+            rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+            rrrs_base_point_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
+            rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
+            rrrs_platform_point_z, size, size_t_3,
+        ) = k
+        # (rrrs-K1) from the base point to the connection point
+        q_in_base_x = (
+        R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
+        )
+        q_in_base_y = (
+        R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
+        )
+        q_in_base_z = (
+        R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
+        )
+        S_x = q_in_base_x + t_x - rrrs_base_point_x
+        S_y = q_in_base_y + t_y - rrrs_base_point_y
+        S_z = q_in_base_z + t_z - rrrs_base_point_z
+        # (rrrs-K2) component along the reference direction
+        px_1 = S_x*rrrs_base_frame_xy + S_y*rrrs_base_frame_yy + S_z*rrrs_base_frame_zy
+        # (rrrs-K3) component across the reference direction
+        py_1 = S_x*rrrs_base_frame_xz + S_y*rrrs_base_frame_yz + S_z*rrrs_base_frame_zz
+        # (rrrs-K5) squared amplitude
+        rho2_1 = px_1*px_1 + py_1*py_1
+        # (rrrs-K7) root, with the sign of the branch
+        root_1 = branch_1*sqrt(rho2_1)
+        # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
+        xi_1_t = S_x*rrrs_base_frame_xx + S_y*rrrs_base_frame_yx + S_z*rrrs_base_frame_zx
+        # (rrrs-K12) from the origin of joint 2 to the connection point
+        x_2_z = xi_1_t - rrrs_joint2_offset_x
+        # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
+        Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
+        # (rrrs-K17) factor of the cosine in the equation of joint 2
+        Kc_2 = root_1*rrrs_joint3_offset_x
+        # (rrrs-K18) factor of the sine in the equation of joint 2
+        Ks_2 = rrrs_joint3_offset_x*x_2_z
+        # (rrrs-K19) squared amplitude
+        rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
+        # (rrrs-K20) discriminant
+        disc_2 = rho2_2 - Kd_2*Kd_2
+        # (rrrs-K21) root, with the sign of the branch
+        root_2 = branch_2*sqrt(disc_2)
+        # (rrrs-K27) from the origin of joint 3 to the connection point
+        x_3_x = Kd_2*inv_size_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
+        c_3 = inv_size_t_2*rrrs_platform_joint_offset_x*x_3_x
+        # (rrrs-K30) sine of the angle of joint 3 from its reference direction
+        s_3 = inv_size_t*inv_size_t_2*root_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        # (rrrs-V2) from joint 2 to the connection point, along the links
+        r_2_x = rrrs_joint3_offset_x + c_3*rrrs_platform_joint_offset_x
+        # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
+        inv_rho2_2 = 1.0/rho2_2
+        c_2 = inv_rho2_2*(Kc_2*Kd_2 + Ks_2*root_2)
+        # (rrrs-K23) sine of the angle of joint 2 from its reference direction
+        s_2 = inv_rho2_2*(Kc_2*root_2 - Kd_2*Ks_2)
+        # (rrrs-V4) velocity of the connection point per rate of joint 1
+        e_1_r2_x = c_2*s_3 - c_3*s_2
+        e_1_r2_y = -c_2*c_3 - s_2*s_3
+        # (rrrs-V3) from joint 1 to the connection point, along the links
+        r_1_r1_x = c_2*root_1 - s_2*xi_1_t
+        r_1_r1_y = -c_2*xi_1_t - root_1*s_2
+        # (rrrs-V4) velocity of the connection point per rate of joint 1
+        v_1_z = e_1_r2_x*(c_3*r_1_r1_y + r_1_r1_x*s_3) - e_1_r2_y*(c_3*r_1_r1_x - r_1_r1_y*s_3)
+        # (rrrs-V2) from joint 2 to the connection point, along the links
+        r_2_r0_y = r_2_x*s_3 - c_3*rrrs_platform_joint_offset_x*s_3
+        # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
+        inv_rho2_1 = 1.0/rho2_1
+        c_1 = inv_rho2_1*py_1*root_1
+        # (rrrs-K9) sine of the angle of joint 1 from its reference direction
+        s_1 = inv_rho2_1*px_1*root_1
+        # (rrrs-V7) reciprocal vector 1
+        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*s_1 - c_1*rrrs_base_frame_xy
+        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*s_1 - c_1*rrrs_base_frame_yy
+        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*s_1 - c_1*rrrs_base_frame_zy
+        w_1_t = e_1_r2_x*s_1
+        w_1_t_2 = c_1*e_1_r2_x
+        axis_y_rrrs_axes3_in_base_x = (
+        e_1_r2_y*rrrs_base_frame_xx + rrrs_base_frame_xy*w_1_t + rrrs_base_frame_xz*w_1_t_2
+        )
+        axis_y_rrrs_axes3_in_base_y = (
+        e_1_r2_y*rrrs_base_frame_yx + rrrs_base_frame_yy*w_1_t + rrrs_base_frame_yz*w_1_t_2
+        )
+        axis_y_rrrs_axes3_in_base_z = (
+        e_1_r2_y*rrrs_base_frame_zx + rrrs_base_frame_zy*w_1_t + rrrs_base_frame_zz*w_1_t_2
+        )
+        inv_v_1_z = 1.0/v_1_z
+        # (rrrs-V8) reciprocal vector 2
+        inv_r_2_r0_y = 1.0/r_2_r0_y
+        # (rrrs-V7) reciprocal vector 1
+        w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_v_1_z
+        w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_v_1_z
+        w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_v_1_z
+        # (M8) moment of the column's unit force about the platform origin
+        H_a_1_x = q_in_base_y*w_1_t_5 - q_in_base_z*w_1_t_4
+        H_a_1_y = q_in_base_z*w_1_t_3 - q_in_base_x*w_1_t_5
+        H_a_1_z = q_in_base_x*w_1_t_4 - q_in_base_y*w_1_t_3
+        # (rrrs-V8) reciprocal vector 2
+        w_2_t = (
+        inv_r_2_r0_y*(axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
+            axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y)
+        )
+        w_2_t_2 = (
+        inv_r_2_r0_y*(axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
+            axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z)
+        )
+        w_2_t_3 = (
+        inv_r_2_r0_y*(axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
+            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x)
+        )
+        # (M9) moment of the column's unit force about the platform origin
+        H_a_2_x = q_in_base_z*w_2_t_2 - q_in_base_y*w_2_t_3
+        H_a_2_y = q_in_base_x*w_2_t_3 - q_in_base_z*w_2_t
+        H_a_2_z = q_in_base_y*w_2_t - q_in_base_x*w_2_t_2
+        # (C2) rms distance of the platform points from their centroid
+        spread_t_2 = b_c_x - rrrs_platform_point_x
+        spread_t_3 = b_c_y - rrrs_platform_point_y
+        spread_t_4 = b_c_z - rrrs_platform_point_z
+        spread_t_5 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3 + spread_t_4*spread_t_4
+        # (rrrs-K5) squared amplitude
+        pivot_size = abs(rho2_1)
+        # (rrrs-K19) squared amplitude
+        pivot_size_2 = abs(rho2_2)
+        # (rrrs-V7) reciprocal vector 1
+        pivot_size_3 = abs(v_1_z)
+        pivot_size_4 = abs(r_2_r0_y)
+        # (rrrs-N52) force at the connection point that balances the leg's inertia and weight along all freedoms
+        least_pivots = (
+        least(least(least(sqrt(inv_rho2_2_t_4*pivot_size_2), inv_size*pivot_size_3),
+            inv_size*pivot_size_4), sqrt(inv_size_t_3*pivot_size))
+        )
+        clear = (
+        clear & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) >
+            _TOLERANCE * _TOLERANCE * rho2_2_t) & (abs(v_1_z) > _TOLERANCE * size) &
+            (abs(-r_2_r0_y) > _TOLERANCE * size))
+        )
+        reached = reached & m.every((disc_2 >= 0.0))
+        sums = m.added(sums, leg, (
+        spread_t_5,
+        ))
+        out_H[[0, 2, 4][leg]] = w_1_t_3
+        out_H[[6, 8, 10][leg]] = w_1_t_4
+        out_H[[12, 14, 16][leg]] = w_1_t_5
+        out_H[[18, 20, 22][leg]] = H_a_1_x
+        out_H[[24, 26, 28][leg]] = H_a_1_y
+        out_H[[30, 32, 34][leg]] = H_a_1_z
+        out_H[[1, 3, 5][leg]] = -w_2_t
+        out_H[[7, 9, 11][leg]] = -w_2_t_2
+        out_H[[13, 15, 17][leg]] = -w_2_t_3
+        out_H[[19, 21, 23][leg]] = H_a_2_x
+        out_H[[25, 27, 29][leg]] = H_a_2_y
+        out_H[[31, 33, 35][leg]] = H_a_2_z
+        out_pivots[[0, 1, 2][leg]] = least_pivots
+        out_reach[[0, 1, 2][leg]] = disc_2
+    total_rrrs, = sums
     # (C2) rms distance of the platform points from their centroid
     spread = spread_t*sqrt(total_rrrs)
-    ok = True
-    return (ok, (spread,),)
+    out_lengths[0] = spread
+    return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
 
 
-_DYNAMICS = _Plan(
-    inputs=('X', 'V'),
-arrays=(('M', (6, 6)), ('Z', (6,)), ('H', (6, 6))),
-    before=_Part(
-        _dynamics_before,
-('J_star_t_22', 'J_star_t_24', 'J_star_xx', 'J_star_xy', 'J_star_xz', 'J_star_yy', 'J_star_yz',
-        'J_star_zz', 'Z_p_t', 'Z_p_t_2', 'Z_p_t_3', 'gravity_x', 'gravity_y', 'gravity_z',
-        'h_star_x', 'h_star_y', 'h_star_z'),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _dynamics_rrrs,
-            "rrrs",
-(),
-('J_1_xx', 'J_2_xx', 'J_2_xy', 'J_2_xz', 'J_2_yy', 'J_2_yz', 'J_3_xx', 'J_3_xy', 'J_3_xz',
-            'J_3_yy', 'J_3_yz', 'J_3_zz', 'Jc_2_zz', 'Kd_2_t', 'Kd_2_t_2', 'Sigma_2_xx',
-            'Sigma_2_yy', 'Sigma_2_zz', 'Sigma_3_xx', 'Sigma_3_yy', 'Sigma_3_zz', 'branch_1',
-            'branch_2', 'd_Gamma_2_t', 'd_Gamma_2_y', 'd_c_yy', 'd_phi_3_t', 'g_r0_x', 'g_r0_y',
-            'g_r0_z', 'h_1_y', 'h_1_z', 'h_2_x', 'h_2_y', 'h_2_z', 'h_3_x', 'h_3_y', 'h_3_z',
-            'inv_rrrs_platform_joint_offset_x', 'inv_size_t', 'inv_size_t_2', 'rho2_2_t',
-            'rrrs_base_frame_xx', 'rrrs_base_frame_xy', 'rrrs_base_frame_xz',
-            'rrrs_base_frame_yx', 'rrrs_base_frame_yy', 'rrrs_base_frame_yz',
-            'rrrs_base_frame_zx', 'rrrs_base_frame_zy', 'rrrs_base_frame_zz', 'rrrs_base_point_x',
-            'rrrs_base_point_y', 'rrrs_base_point_z', 'rrrs_joint2_offset_x',
-            'rrrs_joint3_offset_x', 'rrrs_platform_joint_offset_x', 'rrrs_platform_point_x',
-            'rrrs_platform_point_y', 'rrrs_platform_point_z', 'size', 'size_t_3'),
-(),
-(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17),
-            27,
-            (
-(2, (0, 2, 4)),
-(2, (6, 8, 10)),
-(2, (12, 14, 16)),
-(2, (18, 20, 22)),
-(2, (24, 26, 28)),
-(2, (30, 32, 34)),
-(2, (1, 3, 5)),
-(2, (7, 9, 11)),
-(2, (13, 15, 17)),
-(2, (19, 21, 23)),
-(2, (25, 27, 29)),
-(2, (31, 33, 35)),
-            ),
-        ),
-    ),
-    after=_Part(
-        _dynamics_after,
-('m_star',),
-(18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 31, 32),
-        (
-(0, 0), (0, 1), (0, 6), (0, 2), (0, 12), (0, 7), (0, 8), (0, 13), (0, 14), (0, 3), (0, 18), (0,
-            4), (0, 24), (0, 5), (0, 30), (0, 9), (0, 19), (0, 10), (0, 25), (0, 11), (0, 31), (0,
-            15), (0, 20), (0, 16), (0, 26), (0, 17), (0, 32), (0, 21), (0, 22), (0, 27), (0, 23),
-            (0, 33), (0, 28), (0, 29), (0, 34), (0, 35), (1, 0), (1, 1), (1, 2), (1, 3), (1, 4),
-            (1, 5),
-        ),
-    ),
-)
-_M = _Plan(
-    inputs=('X',),
-arrays=(('M', (6, 6)),),
-    before=_Part(
-        _M_before,
-('J_star_t_22', 'J_star_t_24', 'J_star_xx', 'J_star_xy', 'J_star_xz', 'J_star_yz', 'h_star_x',
-        'h_star_y', 'h_star_z'),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _M_rrrs,
-            "rrrs",
-(),
-('J_1_xx', 'J_2_xx', 'J_2_xy', 'J_2_xz', 'J_2_yy', 'J_2_yz', 'J_3_xx', 'J_3_xy', 'J_3_xz',
-            'J_3_yy', 'J_3_yz', 'J_3_zz', 'Jc_2_zz', 'Kd_2_t', 'Kd_2_t_2', 'branch_1', 'branch_2',
-            'd_Gamma_2_t', 'd_Gamma_2_y', 'd_c_yy', 'd_phi_3_t', 'h_3_x', 'h_3_y', 'h_3_z',
-            'inv_rrrs_platform_joint_offset_x', 'inv_size_t', 'inv_size_t_2', 'rho2_2_t',
-            'rrrs_base_frame_xx', 'rrrs_base_frame_xy', 'rrrs_base_frame_xz',
-            'rrrs_base_frame_yx', 'rrrs_base_frame_yy', 'rrrs_base_frame_yz',
-            'rrrs_base_frame_zx', 'rrrs_base_frame_zy', 'rrrs_base_frame_zz', 'rrrs_base_point_x',
-            'rrrs_base_point_y', 'rrrs_base_point_z', 'rrrs_joint2_offset_x',
-            'rrrs_joint3_offset_x', 'rrrs_platform_joint_offset_x', 'rrrs_platform_point_x',
-            'rrrs_platform_point_y', 'rrrs_platform_point_z', 'size', 'size_t_3'),
-(),
-(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
-            21,
-            (
-            ),
-        ),
-    ),
-    after=_Part(
-        _M_after,
-('m_star',),
-(12, 13, 14, 15, 16, 17, 18, 19, 20),
-        (
-(0, 0), (0, 1), (0, 6), (0, 2), (0, 12), (0, 7), (0, 8), (0, 13), (0, 14), (0, 3), (0, 18), (0,
-            4), (0, 24), (0, 5), (0, 30), (0, 9), (0, 19), (0, 10), (0, 25), (0, 11), (0, 31), (0,
-            15), (0, 20), (0, 16), (0, 26), (0, 17), (0, 32), (0, 21), (0, 22), (0, 27), (0, 23),
-            (0, 33), (0, 28), (0, 29), (0, 34), (0, 35),
-        ),
-    ),
-)
-_Z = _Plan(
-    inputs=('X', 'V'),
-arrays=(('Z', (6,)),),
-    before=_Part(
-        _Z_before,
-('J_star_xx', 'J_star_xy', 'J_star_xz', 'J_star_yy', 'J_star_yz', 'J_star_zz', 'Z_p_t', 'Z_p_t_2',
-        'Z_p_t_3', 'gravity_x', 'gravity_y', 'gravity_z', 'h_star_x', 'h_star_y', 'h_star_z'),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _Z_rrrs,
-            "rrrs",
-(),
-('J_1_xx', 'J_2_xy', 'J_2_xz', 'J_2_yz', 'J_3_xy', 'J_3_xz', 'J_3_yz', 'Kd_2_t', 'Kd_2_t_2',
-            'Sigma_2_xx', 'Sigma_2_yy', 'Sigma_2_zz', 'Sigma_3_xx', 'Sigma_3_yy', 'Sigma_3_zz',
-            'branch_1', 'branch_2', 'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_1_y', 'h_1_z', 'h_2_x',
-            'h_2_y', 'h_2_z', 'h_3_x', 'h_3_y', 'h_3_z', 'inv_rrrs_platform_joint_offset_x',
-            'inv_size_t', 'inv_size_t_2', 'rho2_2_t', 'rrrs_base_frame_xx', 'rrrs_base_frame_xy',
-            'rrrs_base_frame_xz', 'rrrs_base_frame_yx', 'rrrs_base_frame_yy',
-            'rrrs_base_frame_yz', 'rrrs_base_frame_zx', 'rrrs_base_frame_zy',
-            'rrrs_base_frame_zz', 'rrrs_base_point_x', 'rrrs_base_point_y', 'rrrs_base_point_z',
-            'rrrs_joint2_offset_x', 'rrrs_joint3_offset_x', 'rrrs_platform_joint_offset_x',
-            'rrrs_platform_point_x', 'rrrs_platform_point_y', 'rrrs_platform_point_z', 'size',
-            'size_t_3'),
-(),
-(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17),
-            6,
-            (
-            ),
-        ),
-    ),
-    after=_Part(
-        _Z_after,
-(),
-(18, 19, 20, 21, 22, 23),
-        (
-(0, 0), (0, 1), (0, 2), (0, 3), (0, 4), (0, 5),
-        ),
-    ),
-)
-_H = _Plan(
-    inputs=('X',),
-arrays=(('H', (6, 6)),),
-    before=_Part(
-        _H_before,
-(),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _H_rrrs,
-            "rrrs",
-(),
-('Kd_2_t', 'Kd_2_t_2', 'branch_1', 'branch_2', 'inv_size_t', 'inv_size_t_2', 'rho2_2_t',
-            'rrrs_base_frame_xx', 'rrrs_base_frame_xy', 'rrrs_base_frame_xz',
-            'rrrs_base_frame_yx', 'rrrs_base_frame_yy', 'rrrs_base_frame_yz',
-            'rrrs_base_frame_zx', 'rrrs_base_frame_zy', 'rrrs_base_frame_zz', 'rrrs_base_point_x',
-            'rrrs_base_point_y', 'rrrs_base_point_z', 'rrrs_joint2_offset_x',
-            'rrrs_joint3_offset_x', 'rrrs_platform_joint_offset_x', 'rrrs_platform_point_x',
-            'rrrs_platform_point_y', 'rrrs_platform_point_z', 'size', 'size_t_3'),
-(),
-(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
-            0,
-            (
-(0, (0, 2, 4)),
-(0, (6, 8, 10)),
-(0, (12, 14, 16)),
-(0, (18, 20, 22)),
-(0, (24, 26, 28)),
-(0, (30, 32, 34)),
-(0, (1, 3, 5)),
-(0, (7, 9, 11)),
-(0, (13, 15, 17)),
-(0, (19, 21, 23)),
-(0, (25, 27, 29)),
-(0, (31, 33, 35)),
-            ),
-        ),
-    ),
-)
-_REQUIRED = _Plan(
-    inputs=('X', 'V', 'A'),
-arrays=(('required', (6,)), ('H', (6, 6))),
-    before=_Part(
-        _required_before,
-('J_star_xx', 'J_star_xy', 'J_star_xz', 'J_star_yy', 'J_star_yz', 'J_star_zz', 'gravity_x',
-        'gravity_y', 'gravity_z', 'h_star_x', 'h_star_y', 'h_star_z', 'm_star'),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _required_rrrs,
-            "rrrs",
-('gravity_x', 'gravity_y', 'gravity_z'),
-('J_1_xx', 'J_2_xy', 'J_2_xz', 'J_2_yz', 'J_3_xy', 'J_3_xz', 'J_3_yz', 'Kd_2_t', 'Kd_2_t_2',
-            'Sigma_2_xx', 'Sigma_2_yy', 'Sigma_2_zz', 'Sigma_3_xx', 'Sigma_3_yy', 'Sigma_3_zz',
-            'branch_1', 'branch_2', 'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_1_y', 'h_1_z', 'h_2_x',
-            'h_2_y', 'h_2_z', 'h_3_x', 'h_3_y', 'h_3_z', 'inv_rrrs_platform_joint_offset_x',
-            'inv_size_t', 'inv_size_t_2', 'rho2_2_t', 'rrrs_base_frame_xx', 'rrrs_base_frame_xy',
-            'rrrs_base_frame_xz', 'rrrs_base_frame_yx', 'rrrs_base_frame_yy',
-            'rrrs_base_frame_yz', 'rrrs_base_frame_zx', 'rrrs_base_frame_zy',
-            'rrrs_base_frame_zz', 'rrrs_base_point_x', 'rrrs_base_point_y', 'rrrs_base_point_z',
-            'rrrs_joint2_offset_x', 'rrrs_joint3_offset_x', 'rrrs_platform_joint_offset_x',
-            'rrrs_platform_point_x', 'rrrs_platform_point_y', 'rrrs_platform_point_z', 'size',
-            'size_t_3'),
-(),
-(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23),
-            6,
-            (
-(1, (0, 2, 4)),
-(1, (6, 8, 10)),
-(1, (12, 14, 16)),
-(1, (18, 20, 22)),
-(1, (24, 26, 28)),
-(1, (30, 32, 34)),
-(1, (1, 3, 5)),
-(1, (7, 9, 11)),
-(1, (13, 15, 17)),
-(1, (19, 21, 23)),
-(1, (25, 27, 29)),
-(1, (31, 33, 35)),
-            ),
-        ),
-    ),
-    after=_Part(
-        _required_after,
-(),
-(24, 25, 26, 27, 28, 29),
-        (
-(0, 0), (0, 1), (0, 2), (0, 3), (0, 4), (0, 5),
-        ),
-    ),
-)
-_INVERSE_KINEMATICS = _Plan(
-    inputs=('X',),
-arrays=(('q', (9,)),),
-    before=_Part(
-        _inverse_kinematics_before,
-(),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _inverse_kinematics_rrrs,
-            "rrrs",
-(),
-('Kd_2_t', 'Kd_2_t_2', 'branch_1', 'branch_2', 'inv_size_t', 'inv_size_t_2', 'rho2_2_t',
-            'rrrs_base_frame_xx', 'rrrs_base_frame_xy', 'rrrs_base_frame_xz',
-            'rrrs_base_frame_yx', 'rrrs_base_frame_yy', 'rrrs_base_frame_yz',
-            'rrrs_base_frame_zx', 'rrrs_base_frame_zy', 'rrrs_base_frame_zz', 'rrrs_base_point_x',
-            'rrrs_base_point_y', 'rrrs_base_point_z', 'rrrs_joint2_offset_x',
-            'rrrs_joint3_offset_x', 'rrrs_platform_joint_offset_x', 'rrrs_platform_point_x',
-            'rrrs_platform_point_y', 'rrrs_platform_point_z', 'size_t_3'),
-(),
-(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
-            0,
-            (
-(0, (0, 3, 6)),
-(0, (1, 4, 7)),
-(0, (2, 5, 8)),
-            ),
-        ),
-    ),
-)
-_JOINT_RATES = _Plan(
-    inputs=('X', 'V'),
-arrays=(('qd', (9,)),),
-    before=_Part(
-        _joint_rates_before,
-(),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _joint_rates_rrrs,
-            "rrrs",
-(),
-('Kd_2_t', 'Kd_2_t_2', 'branch_1', 'branch_2', 'inv_rrrs_platform_joint_offset_x', 'inv_size_t',
-            'inv_size_t_2', 'rho2_2_t', 'rrrs_base_frame_xx', 'rrrs_base_frame_xy',
-            'rrrs_base_frame_xz', 'rrrs_base_frame_yx', 'rrrs_base_frame_yy',
-            'rrrs_base_frame_yz', 'rrrs_base_frame_zx', 'rrrs_base_frame_zy',
-            'rrrs_base_frame_zz', 'rrrs_base_point_x', 'rrrs_base_point_y', 'rrrs_base_point_z',
-            'rrrs_joint2_offset_x', 'rrrs_joint3_offset_x', 'rrrs_platform_joint_offset_x',
-            'rrrs_platform_point_x', 'rrrs_platform_point_y', 'rrrs_platform_point_z', 'size',
-            'size_t_3'),
-(),
-(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17),
-            0,
-            (
-(0, (0, 3, 6)),
-(0, (1, 4, 7)),
-(0, (2, 5, 8)),
-            ),
-        ),
-    ),
-)
-_JOINT_ACCELERATIONS = _Plan(
-    inputs=('X', 'V', 'A'),
-arrays=(('qdd', (9,)),),
-    before=_Part(
-        _joint_accelerations_before,
-(),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _joint_accelerations_rrrs,
-            "rrrs",
-(),
-('Kd_2_t', 'Kd_2_t_2', 'branch_1', 'branch_2', 'inv_rrrs_platform_joint_offset_x', 'inv_size_t',
-            'inv_size_t_2', 'rho2_2_t', 'rrrs_base_frame_xx', 'rrrs_base_frame_xy',
-            'rrrs_base_frame_xz', 'rrrs_base_frame_yx', 'rrrs_base_frame_yy',
-            'rrrs_base_frame_yz', 'rrrs_base_frame_zx', 'rrrs_base_frame_zy',
-            'rrrs_base_frame_zz', 'rrrs_base_point_x', 'rrrs_base_point_y', 'rrrs_base_point_z',
-            'rrrs_joint2_offset_x', 'rrrs_joint3_offset_x', 'rrrs_platform_joint_offset_x',
-            'rrrs_platform_point_x', 'rrrs_platform_point_y', 'rrrs_platform_point_z', 'size',
-            'size_t_3'),
-(),
-(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23),
-            0,
-            (
-(0, (0, 3, 6)),
-(0, (1, 4, 7)),
-(0, (2, 5, 8)),
-            ),
-        ),
-    ),
-)
-_LEGS_FORCE = _Plan(
-    inputs=('X', 'V', 'A'),
-arrays=(('leg_force', (3, 3)), ('drive', (6, 3))),
-    before=_Part(
-        _legs_before,
-(),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _legs_rrrs,
-            "rrrs",
-('gravity_x', 'gravity_y', 'gravity_z'),
-('J_1_xx', 'J_2_xy', 'J_2_xz', 'J_2_yz', 'J_3_xy', 'J_3_xz', 'J_3_yz', 'Kd_2_t', 'Kd_2_t_2',
-            'Sigma_2_xx', 'Sigma_2_yy', 'Sigma_2_zz', 'Sigma_3_xx', 'Sigma_3_yy', 'Sigma_3_zz',
-            'branch_1', 'branch_2', 'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_1_y', 'h_1_z', 'h_2_x',
-            'h_2_y', 'h_2_z', 'h_3_x', 'h_3_y', 'h_3_z', 'inv_rrrs_platform_joint_offset_x',
-            'inv_size_t', 'inv_size_t_2', 'rho2_2_t', 'rrrs_base_frame_xx', 'rrrs_base_frame_xy',
-            'rrrs_base_frame_xz', 'rrrs_base_frame_yx', 'rrrs_base_frame_yy',
-            'rrrs_base_frame_yz', 'rrrs_base_frame_zx', 'rrrs_base_frame_zy',
-            'rrrs_base_frame_zz', 'rrrs_base_point_x', 'rrrs_base_point_y', 'rrrs_base_point_z',
-            'rrrs_joint2_offset_x', 'rrrs_joint3_offset_x', 'rrrs_link3_mass',
-            'rrrs_platform_joint_offset_x', 'rrrs_platform_point_x', 'rrrs_platform_point_y',
-            'rrrs_platform_point_z', 'size', 'size_t_3'),
-(),
-(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23),
-            0,
-            (
-(0, (0, 3, 6)),
-(0, (1, 4, 7)),
-(0, (2, 5, 8)),
-(1, (0, 6, 12)),
-(1, (1, 7, 13)),
-(1, (2, 8, 14)),
-(1, (3, 9, 15)),
-(1, (4, 10, 16)),
-(1, (5, 11, 17)),
-            ),
-        ),
-    ),
-)
-_POTENTIAL = _Plan(
-    inputs=('X',),
-arrays=(('potential', (1,)),),
-    before=_Part(
-        _potential_before,
-('gravity_x', 'gravity_y', 'gravity_z', 'h_star_x', 'h_star_y', 'h_star_z', 'm_star'),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _potential_rrrs,
-            "rrrs",
-(),
-('Kd_2_t', 'Kd_2_t_2', 'b_r0_x', 'b_r0_y', 'branch_1', 'branch_2', 'g_r0_x', 'g_r0_y', 'g_r0_z',
-            'h_1_x', 'h_1_y', 'h_1_z', 'h_2_x', 'h_2_y', 'h_2_z', 'h_3_x', 'h_3_y', 'h_3_z',
-            'inv_size_t', 'inv_size_t_2', 'potential_t', 'potential_t_2', 'rho2_2_t',
-            'rrrs_base_frame_xx', 'rrrs_base_frame_xy', 'rrrs_base_frame_xz',
-            'rrrs_base_frame_yx', 'rrrs_base_frame_yy', 'rrrs_base_frame_yz',
-            'rrrs_base_frame_zx', 'rrrs_base_frame_zy', 'rrrs_base_frame_zz', 'rrrs_base_point_x',
-            'rrrs_base_point_y', 'rrrs_base_point_z', 'rrrs_joint2_offset_x',
-            'rrrs_joint3_offset_x', 'rrrs_link1_mass', 'rrrs_link2_mass',
-            'rrrs_platform_joint_offset_x', 'rrrs_platform_point_x', 'rrrs_platform_point_y',
-            'rrrs_platform_point_z', 'size_t_3'),
-(),
-(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
-            1,
-            (
-            ),
-        ),
-    ),
-    after=_Part(
-        _potential_after,
-(),
-(12,),
-        ((0, 0),),
-    ),
-)
-_CONDITION = _Plan(
-    inputs=('X',),
-arrays=(('H', (6, 6)), ('lengths', (2,)), ('pivots', (3,)), ('reach', (3,))),
-    before=_Part(
-        _condition_before,
-('legs_size',),
-        None,
-        ((1, 1),),
-    ),
-    legs=(
-        _LegPart(
-            _condition_rrrs,
-            "rrrs",
-('b_c_x', 'b_c_y', 'b_c_z'),
-('Kd_2_t', 'Kd_2_t_2', 'branch_1', 'branch_2', 'inv_rho2_2_t_4', 'inv_size', 'inv_size_t',
-            'inv_size_t_2', 'inv_size_t_3', 'rho2_2_t', 'rrrs_base_frame_xx',
-            'rrrs_base_frame_xy', 'rrrs_base_frame_xz', 'rrrs_base_frame_yx',
-            'rrrs_base_frame_yy', 'rrrs_base_frame_yz', 'rrrs_base_frame_zx',
-            'rrrs_base_frame_zy', 'rrrs_base_frame_zz', 'rrrs_base_point_x', 'rrrs_base_point_y',
-            'rrrs_base_point_z', 'rrrs_joint2_offset_x', 'rrrs_joint3_offset_x',
-            'rrrs_platform_joint_offset_x', 'rrrs_platform_point_x', 'rrrs_platform_point_y',
-            'rrrs_platform_point_z', 'size', 'size_t_3'),
-(),
-(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
-            1,
-            (
-(0, (0, 2, 4)),
-(0, (6, 8, 10)),
-(0, (12, 14, 16)),
-(0, (18, 20, 22)),
-(0, (24, 26, 28)),
-(0, (30, 32, 34)),
-(0, (1, 3, 5)),
-(0, (7, 9, 11)),
-(0, (13, 15, 17)),
-(0, (19, 21, 23)),
-(0, (25, 27, 29)),
-(0, (31, 33, 35)),
-(2, (0, 1, 2)),
-(3, (0, 1, 2)),
-            ),
-        ),
-    ),
-    after=_Part(
-        _condition_after,
-('spread_t',),
-(),
-        ((1, 0),),
-    ),
-)
+_Q = 3  # where a quaternion begins in X
 _DEFAULT = Parameters()
 
 
-_PIVOT = 1.8e-12  # a pivot below this fraction of its row counts as zero (epsilon^(3/4))
-_CLEARLY = 2.0  # rows change places only for a pivot that is larger by this factor
+def _steps_M(m, X):
+    M_of_M, = m.run(_run_M, ((6, 6),), X)
+    return (M_of_M,)
 
 
-def _solve(a, b):
-    """Solve a x = b, a (..., n, n), b (..., n): rows scaled, partial pivoting; NaN if singular."""
-    lead = np.broadcast_shapes(a.shape[:-2], b.shape[:-1])
-    n = a.shape[-1]
-    count = int(np.prod(lead, dtype=int))
-    a = np.broadcast_to(a, (*lead, n, n)).reshape(count, n, n).copy()
-    b = np.broadcast_to(b, (*lead, n)).reshape(count, n).copy()
-    if count <= _FEW:
-        rows = [_solve_one(matrix, right) for matrix, right in zip(a.tolist(), b.tolist())]
-        x = np.array(rows).reshape(count, n)
-    else:
-        with np.errstate(all="ignore"):
-            x = _solve_block(a, b)
-    x[~np.isfinite(x).all(axis=1)] = np.nan
-    return x.reshape(*lead, n)
+def _steps_Z(m, X, V):
+    Z_of_Z, = m.run(_run_Z, ((6,),), X, V)
+    return (Z_of_Z,)
 
 
-def _solve_one(a, b):
-    """The same for one system of nested lists."""
-    n = len(b)
-    failure = [np.nan] * n
-    for i, row in enumerate(a):
-        size = max(map(abs, row), default=0.0)
-        if not 0.0 < size < np.inf:
-            return failure
-        a[i] = [v / size for v in row] + [b[i] / size]
-    for k in range(n):
-        best = max(range(k, n), key=lambda i: abs(a[i][k]))
-        if abs(a[best][k]) > _CLEARLY * abs(a[k][k]):
-            a[k], a[best] = a[best], a[k]
-        if not abs(a[k][k]) > _PIVOT:
-            return failure
-        head = a[k]
-        for i in range(k + 1, n):
-            factor = a[i][k] / head[k]
-            a[i] = [v - factor * h for v, h in zip(a[i], head)]
-    x = [0.0] * n
-    for k in reversed(range(n)):
-        x[k] = (a[k][n] - sum(a[k][j] * x[j] for j in range(k + 1, n))) / a[k][k]
-    return x
+def _steps_H(m, X):
+    H_of_H, = m.run(_run_H, ((6, 6),), X)
+    return (H_of_H,)
 
 
-def _solve_block(a, b):
-    """The same for many systems, (states, n, n) and (states, n)."""
-    states, n = b.shape
-    size = np.max(np.abs(a), axis=2, keepdims=True)
-    good = np.all((size > 0.0) & np.isfinite(size), axis=(1, 2))
-    a = np.concatenate((a, b[:, :, None]), axis=2) / size
-    which = np.arange(states)
-    for k in range(n):
-        column = np.abs(a[:, k:, k])
-        best = np.argmax(column, axis=1)
-        best = k + np.where(column[which, best] > _CLEARLY * column[:, 0], best, 0)
-        a[which, k], a[which, best] = a[which, best], a[which, k].copy()
-        good &= np.abs(a[:, k, k]) > _PIVOT
-        factor = a[:, k + 1 :, k] / a[:, k, k, None]
-        a[:, k + 1 :] -= factor[:, :, None] * a[:, k, None]
-    x = np.zeros((states, n))
-    for k in reversed(range(n)):
-        x[:, k] = (a[:, k, n] - np.sum(a[:, k, k + 1 : n] * x[:, k + 1 :], axis=1)) / a[:, k, k]
-    x[~good] = np.nan
-    return x
+def _steps_inverse_kinematics(m, X):
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((9,),), X)
+    return (q_of_inverse_kinematics,)
+
+
+def _steps_joint_rates(m, X, V):
+    qd_of_joint_rates, = m.run(_run_joint_rates, ((9,),), X, V)
+    return (qd_of_joint_rates,)
+
+
+def _steps_joint_accelerations(m, X, V, A):
+    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ((9,),), X, V, A)
+    return (qdd_of_joint_accelerations,)
+
+
+def _steps_dynamics(m, X, V):
+    (
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
+    ) = m.run(_run_dynamics, ((6, 6), (6,), (6, 6)), X, V)
+    return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
+
+
+def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
+    required_of_required, H_of_required = m.run(_run_required, ((6,), (6, 6)), X, V, A)
+    extend_1 = wrench
+    subtract_2 = required_of_required - extend_1
+    solve_3 = _solve(H_of_required, subtract_2)
+    return (solve_3,)
+
+
+def _steps_forward_dynamics(m, X, V, tau, wrench):
+    (
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
+    ) = m.run(_run_dynamics, ((6, 6), (6,), (6, 6)), X, V)
+    times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
+    extend_2 = wrench
+    add_3 = times_1 + extend_2
+    subtract_4 = add_3 - Z_of_dynamics
+    solve_5 = _solve(M_of_dynamics, subtract_4)
+    return (solve_5,)
+
+
+def _steps_complete_acceleration(m, X, V, A, wrench):
+    same_1 = A
+    return (same_1,)
+
+
+def _steps_leg_reactions(m, X, V, A, wrench):
+    required_of_required, H_of_required = m.run(_run_required, ((6,), (6, 6)), X, V, A)
+    extend_1 = wrench
+    subtract_2 = required_of_required - extend_1
+    solve_3 = _solve(H_of_required, subtract_2)
+    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ((3, 3), (6, 3)), X, V, A)
+    add_forces_4 = _with_forces(leg_force_of_legs, solve_3, drive_of_legs, [0, 0, 1, 1, 2, 2])
+    return (add_forces_4,)
+
+
+def _steps_energy(m, X, V):
+    M_of_M, = m.run(_run_M, ((6, 6),), X)
+    potential_of_potential, = m.run(_run_potential, ((1,),), X)
+    half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
+    entry_2 = potential_of_potential[0]
+    return (half_form_1, entry_2,)
+
+
+def _steps_null_space(m, X):
+    H_of_H, = m.run(_run_H, ((6, 6),), X)
+    null_basis_1 = _null_basis(H_of_H, 6)
+    return (null_basis_1,)
+
+
+def _steps_condition(m, X, length):
+    (
+    H_of_condition, lengths_of_condition, pivots_of_condition, reach_of_condition,
+    ) = m.run(_run_condition, ((6, 6), (2,), (3,), (3,)), X)
+    choose_length_1 = _chosen_length(lengths_of_condition, length)
+    divide_rows_2 = _rows_divided(H_of_condition, choose_length_1, [3, 4, 5])
+    singular_values_3 = _singular_values(divide_rows_2)
+    return (singular_values_3, pivots_of_condition,)
+
+
+def _steps_mismatch(m, X, q_actuated):
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((9,),), X)
+    take_1 = q_of_inverse_kinematics[[0, 1, 3, 4, 6, 7]]
+    subtract_2 = q_actuated - take_1
+    wrap_turns_3 = _wrapped(subtract_2, [0, 1, 2, 3, 4, 5])
+    return (wrap_turns_3,)
+
+
+def _steps_slope(m, X):
+    H_of_H, = m.run(_run_H, ((6, 6),), X)
+    return (H_of_H,)
+
+
+def _steps_forward_kinematics(m, q_actuated, X0):
+    X_found = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    return (X_found,)
+
+
+def _steps_rotation(m, X):
+    take_1 = X[3:7]
+    rotation_of_quaternion_2 = _rotation_of_quaternion(take_1)
+    return (rotation_of_quaternion_2,)
+
+
+def _steps_pose(m, t, R):
+    quaternion_of_rotation_1 = _quaternion_of_rotation(R)
+    join_2 = np.concatenate((t, quaternion_of_rotation_1))
+    extend_3 = join_2
+    return (extend_3,)
+
+
+def _steps_X_dot(m, X, V):
+    take_1 = V[3:6]
+    take_2 = X[3:7]
+    quaternion_rate_3 = _quaternion_rate(take_2, take_1)
+    take_4 = V[0:3]
+    join_5 = np.concatenate((take_4, quaternion_rate_3))
+    return (join_5,)
+
+
+def _steps_pose_from_rpy(m, t, rpy):
+    quaternion_of_rpy_1 = _quaternion_of_rpy(rpy)
+    join_2 = np.concatenate((t, quaternion_of_rpy_1))
+    extend_3 = join_2
+    return (extend_3,)
 
 
 def M(X, p=None):
-    """Inertia matrix (..., NV, NV) at X (..., NQ)."""
-    return _evaluate(_M, p, X=_vector("M", "X", X, NQ))[0]
+    """Inertia matrix M.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        M: inertia matrix M (..., NV, NV).
+    """
+    return _call(
+        "M", _steps_M, p,
+        ("X", X, (NQ,)),
+    )
 
 
 def Z(X, V, p=None):
-    """Velocity and gravity terms (..., NV) at X (..., NQ), V (..., NV)."""
-    return _evaluate(_Z, p, X=_vector("Z", "X", X, NQ), V=_vector("Z", "V", V, NV))[0]
+    """Velocity and gravity terms Z.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        Z: velocity and gravity terms Z (..., NV).
+    """
+    return _call(
+        "Z", _steps_Z, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+    )
 
 
 def H(X, p=None):
-    """Force transformation (..., NV, NU): actuators to task space."""
-    return _evaluate(_H, p, X=_vector("H", "X", X, NQ))[0]
+    """Force transformation H: actuators to task space.
 
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
 
-def dynamics(X, V, p=None):
-    """M, Z and H together, sharing the work."""
-    X, V = _vector("dynamics", "X", X, NQ), _vector("dynamics", "V", V, NV)
-    return tuple(_evaluate(_DYNAMICS, p, X=X, V=V)[:3])
-
-
-def _external(function, wrench):
-    """The wrench (..., NW) as a generalised force (..., NV); extra coordinates get none."""
-    if wrench is None:
-        return np.zeros(NV)
-    wrench = _vector(function, "wrench", wrench, NW)
-    return np.concatenate((wrench, np.zeros((*wrench.shape[:-1], NV - NW))), axis=-1)
-
-
-def _together(failed, *arrays):
-    """The arrays with NaN in every row in which one of them failed."""
-    for array, axes in arrays:
-        array[np.broadcast_to(failed, array.shape[: array.ndim - axes])] = np.nan
-    return [array for array, _ in arrays]
-
-
-def _known(array, axes, *inputs):
-    """The array, NaN in every row in which one of its entries or an input is not finite."""
-    failed = ~np.isfinite(array).all(axis=tuple(range(-axes, 0)))
-    for value in inputs:
-        failed = failed | ~np.isfinite(value).all(axis=-1)
-    return _together(failed, (array, axes))[0]
-
-
-def _weights(weights):
-    """The weights (..., NU) of the drives."""
-    if weights is None:
-        return np.ones(NU)
-    weights = _vector("inverse_dynamics", "weights", weights, NU)
-    if not np.all((weights > 0.0) & (weights < np.inf)):
-        raise ValueError("inverse_dynamics: weights must be positive and finite")
-    return weights
-
-
-def inverse_dynamics(X, V, A, p=None, *, wrench=None, weights=None):
-    """Actuator forces tau (..., NU) for the acceleration A (..., NV), by Eq. 3.
-
-    The wrench (..., NW) acts on the platform. weights: unused, as the drives are not redundant.
+    Returns:
+        H: force transformation H: actuators to task space (..., NV, NU).
     """
-    X, V = _vector("inverse_dynamics", "X", X, NQ), _vector("inverse_dynamics", "V", V, NV)
-    A = _vector("inverse_dynamics", "A", A, NV)
-    weights, external = _weights(weights), _external("inverse_dynamics", wrench)
-    _lead(X=X, V=V, A=A, wrench=external, weights=weights)
-    required, matrix, *rest = _evaluate(_REQUIRED, p, X=X, V=V, A=A)
-    force = required - external
-    return _drive_forces(matrix, rest[0] if rest else None, force, weights)
-
-
-def forward_dynamics(X, V, tau, p=None, *, wrench=None):
-    """Acceleration A (..., NV) under actuator forces tau (..., NU) and the wrench."""
-    X, V = _vector("forward_dynamics", "X", X, NQ), _vector("forward_dynamics", "V", V, NV)
-    tau, external = _vector("forward_dynamics", "tau", tau, NU), _external("forward_dynamics", wrench)
-    _lead(X=X, V=V, tau=tau, wrench=external)
-    inertia, bias, matrix, *rest = _evaluate(_DYNAMICS, p, X=X, V=V)
-    with np.errstate(all="ignore"):
-        force = (matrix @ tau[..., None])[..., 0] + external - bias
-    return _solve(inertia, force)
-
-
-def complete_acceleration(X, V, A, p=None, *, wrench=None):
-    """A: there are no passive extra coordinates, whose accelerations would have to follow."""
-    X, V = _vector("complete_acceleration", "X", X, NQ), _vector("complete_acceleration", "V", V, NV)
-    A, external = _vector("complete_acceleration", "A", A, NV), _external("complete_acceleration", wrench)
-    p, lead = _given(p), _lead(X=X, V=V, A=A, wrench=external)
-    return _known(np.array(np.broadcast_to(A, (*lead, NV))), 1)
-
-
-def _drive_forces(matrix, directions, force, weights):
-    """tau with H tau = force."""
-    del directions, weights
-    rows = list(_DRIVEN_ROWS)
-    tau = _solve(matrix[..., rows, :], force[..., rows])
-    return _known(tau, 1, force)
-
-
-def null_space(X, p=None):
-    """Basis (..., NU, 0) of the tau with H tau = 0: empty, the drives are not redundant."""
-    X = _vector("null_space", "X", X, NQ)
-    _given(p)
-    return np.zeros((*X.shape[:-1], NU, 0))
-
-
-_MOMENT_ROWS = (3, 4, 5)  # rows of H that are moments
-
-
-def condition(X, p=None, *, length=None):
-    """How far a pose is from singularities: sigma (..., 6), legs (..., 3), status (...).
-
-    sigma: singular values of H in descending order, moment rows divided by `length` [m], as a
-    rule the rms distance of the platform points from their centroid (where they coincide, the
-    rms size of the legs).  legs: for every leg the least tested pivot as a fraction of its scale;
-    a leg is refused at 1.5e-8.  status: 0 OK, 1 unreachable, 2 singular leg, 3 invalid, 4 not
-    converged, as in C; sigma and legs are NaN where it is not 0.
-    """
-    return _condition("condition", X, p, length)
-
-
-def _condition(name, X, p, length, columns=NU):
-    """sigma of the first columns of H, margins of the legs, status codes."""
-    X = _vector(name, "X", X, NQ)
-    p = _given(p)
-    if length is not None:
-        size = _numbers(name, "length", length)
-        if size.shape or not 0.0 < size < np.inf:
-            raise ValueError(f"{name}: length is {length!r}, expected a positive number")
-    lead = X.shape[:-1]
-    vectors = {"X": X.reshape(-1, NQ)}
-    states = len(vectors["X"])
-    made = [np.zeros((states, int(np.prod(shape, dtype=int)))) for _, shape in _CONDITION.arrays]
-    flat = [np.ascontiguousarray(vectors[k].T) for k in _CONDITION.inputs]
-    with np.errstate(all="ignore"):
-        given = _CONDITION.before.function(_CONDITION.constants(p)[0], *flat, _Arrays)[0]
-        _run_block(_CONDITION, p, flat, made)
-        found = {n: v.reshape(states, *s) for v, (n, s) in zip(made, _CONDITION.arrays)}
-        spread, legs_size = found["lengths"].T
-        if length is None:
-            length = np.where(spread > 1e-9 * legs_size, spread, legs_size)[:, None, None]
-        matrix = found["H"]
-        matrix[:, list(_MOMENT_ROWS)] /= length
-        finite = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(found["pivots"]).all(axis=1)
-        status = np.select(
-            [
-                ~(np.isfinite(vectors["X"]).all(axis=1) & given),
-                ~(found["reach"] >= 0.0).all(axis=1),
-                ~(found["pivots"] > _TOLERANCE).all(axis=1),
-                ~finite,
-            ],
-            [3, 1, 2, 3],
-            0,
-        )
-    good = (status == 0)[:, None]
-    sigma = np.linalg.svd(np.where(good[..., None], matrix[..., :columns], 0.0), compute_uv=False)
-    sigma, legs = np.where(good, sigma, np.nan), np.where(good, found["pivots"], np.nan)
-    return (
-        sigma.reshape(*lead, sigma.shape[1]), legs.reshape(*lead, legs.shape[1]),
-        status.reshape(lead)[()],
+    return _call(
+        "H", _steps_H, p,
+        ("X", X, (NQ,)),
     )
 
 
 def inverse_kinematics(X, p=None):
-    """Displacements q (..., NJ) of all joints at X, on the assembly branch of home."""
-    return _evaluate(_INVERSE_KINEMATICS, p, X=_vector("inverse_kinematics", "X", X, NQ))[0]
+    """Displacements q of all joints.
+
+    They are those of the assembly branch of home.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        q: displacements q of all joints (..., NJ).
+    """
+    return _call(
+        "inverse_kinematics", _steps_inverse_kinematics, p,
+        ("X", X, (NQ,)),
+    )
 
 
 def joint_rates(X, V, p=None):
-    """Rates of all joints (..., NJ)."""
-    X, V = _vector("joint_rates", "X", X, NQ), _vector("joint_rates", "V", V, NV)
-    return _evaluate(_JOINT_RATES, p, X=X, V=V)[0]
+    """Rates of all joints.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        qd: rates of all joints (..., NJ).
+    """
+    return _call(
+        "joint_rates", _steps_joint_rates, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+    )
 
 
 def joint_accelerations(X, V, A, p=None):
-    """Accelerations of all joints (..., NJ)."""
-    X, V = _vector("joint_accelerations", "X", X, NQ), _vector("joint_accelerations", "V", V, NV)
-    return _evaluate(
-        _JOINT_ACCELERATIONS, p, X=X, V=V, A=_vector("joint_accelerations", "A", A, NV))[0]
+    """Accelerations of all joints.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        A: acceleration (..., NV).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        qdd: accelerations of all joints (..., NJ).
+    """
+    return _call(
+        "joint_accelerations", _steps_joint_accelerations, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+        ("A", A, (NV,)),
+    )
+
+
+def dynamics(X, V, p=None):
+    """M, Z and H together, sharing the work.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        M: inertia matrix (..., NV, NV).
+        Z: velocity and gravity terms (..., NV).
+        H: force transformation (..., NV, NU).
+    """
+    return _call(
+        "dynamics", _steps_dynamics, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+    )
+
+
+def inverse_dynamics(X, V, A, p=None, *, wrench=None, weights=None):
+    """Actuator forces tau for the acceleration A, by Eq. 3.
+
+    The weights are not used, as the actuators are not redundant.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        A: acceleration (..., NV).
+        wrench: external wrench on the platform, by default zero (..., NW).
+        weights: positive weights of the actuator forces: least sum of weights tau^2, by default
+            one (..., NU).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        tau: actuator forces [N or N m] (..., NU).
+    """
+    return _call(
+        "inverse_dynamics", _steps_inverse_dynamics, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+        ("A", A, (NV,)),
+        ("wrench", wrench, (NW,), 0.0),
+        ("weights", weights, (NU,), 1.0, "positive"),
+    )
+
+
+def forward_dynamics(X, V, tau, p=None, *, wrench=None):
+    """Acceleration A under the actuator forces tau and the wrench.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        tau: actuator forces [N or N m] (..., NU).
+        wrench: external wrench on the platform, by default zero (..., NW).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        A: acceleration (..., NV).
+    """
+    return _call(
+        "forward_dynamics", _steps_forward_dynamics, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+        ("tau", tau, (NU,)),
+        ("wrench", wrench, (NW,), 0.0),
+    )
+
+
+def complete_acceleration(X, V, A, p=None, *, wrench=None):
+    """A with the entries of passive extra coordinates that the others allow.
+
+    It is A: there are no passive extra coordinates, whose accelerations would follow.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        A: acceleration (..., NV).
+        wrench: external wrench on the platform, by default zero (..., NW).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        completed: acceleration (..., NV).
+    """
+    return _call(
+        "complete_acceleration", _steps_complete_acceleration, p,
+        ("X", X, (NQ,), None, "unused"),
+        ("V", V, (NV,), None, "unused"),
+        ("A", A, (NV,)),
+        ("wrench", wrench, (NW,), 0.0, "unused"),
+    )
 
 
 def leg_reactions(X, V, A, p=None, *, wrench=None):
-    """Force of each leg on the platform (..., legs, 3) at its platform joint, base axes.
+    """Force of each leg on the platform at its platform joint, base axes.
 
-    The drives give the forces of `inverse_dynamics`.
+    The actuators give the forces of `inverse_dynamics`.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        A: acceleration (..., NV).
+        wrench: external wrench on the platform, by default zero (..., NW).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        forces: leg on platform [N, N m] (..., 3, 3).
     """
-    X, V = _vector("leg_reactions", "X", X, NQ), _vector("leg_reactions", "V", V, NV)
-    A = _vector("leg_reactions", "A", A, NV)
-    wrench = None if wrench is None else _vector("leg_reactions", "wrench", wrench, NW)
-    forces, drive, *directions = _evaluate(_LEGS_FORCE, p, X=X, V=V, A=A)
-    tau = inverse_dynamics(X, V, A, p, wrench=wrench)
-    parts = [(tau, drive, _ACTUATOR_LEGS)]
-    forces = np.array(np.broadcast_to(forces, (*parts[0][0].shape[:-1], *forces.shape[-2:])))
-    for amounts, vectors, legs in parts:
-        for k, leg in enumerate(legs):
-            forces[..., leg, :] += amounts[..., k, None] * vectors[..., k, :]
-    return _together(np.isnan(forces).any(axis=(-1, -2)), (forces, 2))[0]
+    return _call(
+        "leg_reactions", _steps_leg_reactions, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+        ("A", A, (NV,)),
+        ("wrench", wrench, (NW,), 0.0),
+    )
 
 
 def energy(X, V, p=None):
-    """Kinetic and potential energy (...,); the latter is zero at the base origin."""
-    X, V = _vector("energy", "X", X, NQ), _vector("energy", "V", V, NV)
-    _lead(X=X, V=V)
-    inertia = M(X, p)
-    with np.errstate(all="ignore"):
-        kinetic = 0.5 * np.einsum("...i,...ij,...j->...", V, inertia, V)
-    potential = _evaluate(_POTENTIAL, p, X=X)[0][..., 0]
-    known = np.where(np.isfinite(kinetic) & np.isfinite(potential), 0.0, np.nan)
-    return kinetic + known, potential + known
+    """Kinetic and potential energy [J]; the latter is zero at the base origin.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        kinetic: kinetic energy [J] (...,).
+        potential: potential energy [J] (...,).
+    """
+    return _call(
+        "energy", _steps_energy, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+    )
+
+
+def null_space(X, p=None):
+    """Orthonormal basis of the tau with H tau = 0.
+
+    It is empty: the actuators are not redundant.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        basis: columns (..., NU, 0).
+    """
+    return _call(
+        "null_space", _steps_null_space, p,
+        ("X", X, (NQ,)),
+    )
+
+
+def condition(X, p=None, *, length=None):
+    """How far a pose is from singularities: singular values of H, rows of moments divided by a
+    length; for every leg the least tested pivot as a fraction of its scale.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        length: by which rows of moments are divided [m]; by default the rms distance of the
+            platform points from their centroid, or where they coincide the rms size of the legs
+            (...,).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        sigma: singular values, in descending order (..., 6).
+        legs: least pivots; a leg is refused at 1.5e-8 (..., 3).
+        status: 0 OK, 1 unreachable, 2 singular leg, 3 invalid, 4 not converged, as in C (...).
+    """
+    return _call(
+        "condition", _steps_condition, p,
+        ("X", X, (NQ,)),
+        ("length", length, (), 0.0, "positive"),
+        mode=_Judged,
+    )
 
 
 def forward_kinematics(q_actuated, X0, p=None):
-    """X at which the driven joints stand at q_actuated (..., NU), by Gauss-Newton from X0.
+    """X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0.
 
-    Extra coordinates that the drives do not determine stay.  NaN where no X is found.
+    Extra coordinates that actuators do not determine stay.
+
+    Impossible where no pose is found.
+
+    Args:
+        q_actuated: displacements of the actuated joints [m or rad] (..., NU).
+        X0: first guess of the pose (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        X: pose (..., NQ).
     """
-    q_actuated = _vector("forward_kinematics", "q_actuated", q_actuated, NU)
-    X0, p = _vector("forward_kinematics", "X0", X0, NQ), _given(p)
-    lead = _lead(q_actuated=q_actuated, X0=X0)
-    target = np.broadcast_to(q_actuated, (*lead, NU)).reshape(-1, NU)
-    X = np.broadcast_to(X0, (*lead, NQ)).reshape(-1, NQ).copy()
-    found = [_find_pose(q, x, p) for q, x in zip(target, X)]
-    return np.array(found).reshape(*lead, NQ)
-
-
-def _mismatch(q_actuated, X, p):
-    """Residual of driven joints: turns modulo 2 pi."""
-    gap = q_actuated - inverse_kinematics(X, p)[list(_DRIVEN_JOINTS)]
-    gap[list(_TURNING_DRIVES)] = np.remainder(gap[list(_TURNING_DRIVES)] + np.pi, 2 * np.pi) - np.pi
-    return gap
-
-
-def _find_pose(q_actuated, X, p):
-    """Gauss-Newton with step halving for one state."""
-    failure = np.full(NQ, np.nan)
-    if not (np.isfinite(q_actuated).all() and np.isfinite(X).all()):
-        return failure
-    gap = _mismatch(q_actuated, X, p)
-    for _ in range(50):
-        size = np.max(np.abs(gap), initial=0.0)
-        if not np.isfinite(size):
-            return failure
-        if size < 1e-13:
-            break
-        jacobian = H(X, p)
-        if np.isnan(jacobian).any():
-            return failure
-        step = np.linalg.lstsq(jacobian.T, gap, rcond=1e-10)[0]
-        for halving in range(12):
-            trial = _moved(X, step * 0.5**halving)
-            trial_gap = _mismatch(q_actuated, trial, p)
-            if np.max(np.abs(trial_gap)) < size:
-                break
-        else:
-            break
-        X, gap = trial, trial_gap
-    return X if np.max(np.abs(gap), initial=0.0) < 1e-9 else failure
-
-
-def _rotations(R, n, nearest):
-    """Rotation matrices (..., n, n): R as it is, or the nearest; those with NaN stay."""
-    R = np.array(_numbers("pose", "R", R))
-    if R.shape[-2:] != (n, n):
-        raise ValueError(f"pose: R has shape {R.shape}, expected (..., {n}, {n})")
-    known = np.isfinite(R).all(axis=(-1, -2))
-    if nearest:
-        R[known] = _nearest(R[known])
-    if not np.all(_are_rotations(R[known])):
-        raise ValueError(
-            "pose: R is no rotation matrix, with orthonormal rows to 1e-06 and determinant +1;"
-            " nearest=True takes the nearest one")
-    return R
-
-
-def _nearest(R):
-    """The nearest rotations (k, n, n); ValueError where several are."""
-    largest = np.max(np.abs(R), axis=(1, 2), keepdims=True)
-    u, s, vt = np.linalg.svd(R / np.where(largest > 0.0, largest, 1.0))
-    sign = np.sign(np.linalg.det(u @ vt))
-    if np.any(s[:, -2] + sign * s[:, -1] <= 1e-06 * s[:, 0]):
-        raise ValueError("pose: R has no single nearest rotation")
-    u[:, :, -1] *= sign[:, None]
-    return u @ vt
-
-
-_Q = 3  # where the quaternion begins in X
+    return _call(
+        "forward_kinematics", _steps_forward_kinematics, p,
+        ("q_actuated", q_actuated, (NU,)),
+        ("X0", X0, (NQ,)),
+    )
 
 
 def rotation(X):
-    """base_R_platform (..., 3, 3) at X (..., NQ); the quaternion need not be normalised.
+    """base_R_platform at X; a quaternion need not be normalised.
 
-    NaN where it is zero or its squared length overflows.
+    Impossible where the quaternion is zero or its squared length overflows.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+
+    Returns:
+        R: rotation matrix base_R_platform (..., 3, 3).
     """
-    X = _vector("rotation", "X", X, NQ)
-    with np.errstate(all="ignore"):
-        x, y, z, w = np.moveaxis(_scaled(X[..., _Q : _Q + 4]), -1, 0)
-        xx, yy, zz, ww = x * x, y * y, z * z, w * w
-        n = xx + yy + zz + ww
-        rows = (
-            ((xx + ww - (yy + zz)) / n, 2 * (x * y - w * z) / n, 2 * (x * z + w * y) / n),
-            (2 * (x * y + w * z) / n, (yy + ww - (xx + zz)) / n, 2 * (y * z - w * x) / n),
-            (2 * (x * z - w * y) / n, 2 * (y * z + w * x) / n, (zz + ww - (xx + yy)) / n),
-        )
-    return _known(np.stack([np.stack(row, axis=-1) for row in rows], axis=-2), 2, X)
-
-
-def _scaled(q):
-    """Quaternions (..., 4) with largest entry 1, so that squares of tiny ones keep their digits."""
-    size = np.max(np.abs(q), axis=-1, keepdims=True)
-    return q / np.where(np.isfinite(np.sum(q * q, axis=-1, keepdims=True)), size, np.nan)
-
-
-def _unit(q):
-    """Quaternions (..., 4) of length 1."""
-    q = _scaled(q)
-    return q / np.linalg.norm(q, axis=-1, keepdims=True)
+    return _call(
+        "rotation", _steps_rotation, None,
+        ("X", X, (NQ,)),
+    )
 
 
 def pose(t, R, *, nearest=False):
-    """X of the platform at origin t (..., 3) with rotation matrix R (..., 3, 3); extra coordinates zero.
+    """X of the platform at origin t with rotation matrix R; extra coordinates zero.
 
-    ValueError where R has not orthonormal rows, to 1e-06, and determinant +1.  With nearest=True
-    the rotation is taken that is nearest to R (least sum of squared differences of entries).
+    Args:
+        t: position of the platform origin [m] (..., 3).
+        R: rotation matrix base_R_platform (..., 3, 3).
+        nearest: take the rotation that is nearest to R: the least sum of squared differences.
+
+    Returns:
+        X: pose (..., NQ).
+
+    Raises:
+        ValueError: R has not orthonormal rows, to 1e-06, and determinant +1, or no single nearest
+            rotation.
     """
-    R = _rotations(R, 3, nearest)
-    with np.errstate(all="ignore"):
-        return _with_position("pose", t, _quaternion(R))
-
-
-def _quaternion(R):
-    """x, y, z, w of rotation matrices (..., 3, 3)."""
-    d = np.einsum("...ii->...i", R)
-    # each candidate is four times the quaternion times one of its entries; take the longest
-    s = (R[..., 2, 1] + R[..., 1, 2], R[..., 0, 2] + R[..., 2, 0], R[..., 1, 0] + R[..., 0, 1])
-    a = (R[..., 2, 1] - R[..., 1, 2], R[..., 0, 2] - R[..., 2, 0], R[..., 1, 0] - R[..., 0, 1])
-    x, y, z = d[..., 0], d[..., 1], d[..., 2]
-    candidates = np.stack([
-        np.stack((1 + x - y - z, s[2], s[1], a[0]), axis=-1),
-        np.stack((s[2], 1 - x + y - z, s[0], a[1]), axis=-1),
-        np.stack((s[1], s[0], 1 - x - y + z, a[2]), axis=-1),
-        np.stack((a[0], a[1], a[2], 1 + x + y + z), axis=-1),
-    ], axis=-2)
-    best = np.argmax(np.linalg.norm(candidates, axis=-1), axis=-1)
-    q = np.take_along_axis(candidates, best[..., None, None], axis=-2)[..., 0, :]
-    return _unit(q)
-
-
-def _with_position(function, t, q):
-    """X of a position and a quaternion; extra coordinates zero."""
-    t = _vector(function, "t", t, _Q)
-    lead = _lead(t=t, rotation=q)
-    parts = [np.broadcast_to(v, lead + v.shape[-1:]) for v in (t, q)]
-    return _known(np.concatenate((*parts, np.zeros((*lead, NQ - _Q - 4))), axis=-1), 1)
-
-
-def pose_from_rpy(t, rpy):
-    """X from roll, pitch, yaw (..., 3) about the fixed axes x, y, z, in that order."""
-    half = 0.5 * _vector("pose_from_rpy", "rpy", rpy, 3)
-    with np.errstate(all="ignore"):
-        cosines, sines = np.cos(half), np.sin(half)
-    (cx, cy, cz), (sx, sy, sz) = np.moveaxis(cosines, -1, 0), np.moveaxis(sines, -1, 0)
-    q = np.stack((
-        sx * cy * cz - cx * sy * sz, cx * sy * cz + sx * cy * sz,
-        cx * cy * sz - sx * sy * cz, cx * cy * cz + sx * sy * sz,
-    ), axis=-1)
-    return _with_position("pose_from_rpy", t, q)
+    return _call(
+        "pose", _steps_pose, None,
+        ("t", t, (3,)),
+        ("R", _rotations(R, 3, nearest), (3, 3)),
+    )
 
 
 def X_dot(X, V):
-    """Rate of X (..., NQ) at the velocity V (..., NV)."""
-    X, V = _vector("X_dot", "X", X, NQ), _vector("X_dot", "V", V, NV)
-    lead, q, w = _lead(X=X, V=V), X[..., _Q : _Q + 4], V[..., _Q : _Q + 3]
-    with np.errstate(all="ignore"):
-        vector = 0.5 * (q[..., 3:] * w + np.cross(w, q[..., :3]))
-        scalar = -0.5 * np.sum(w * q[..., :3], axis=-1, keepdims=True)
-    parts = (V[..., :_Q], vector, scalar, V[..., _Q + 3 :])
-    rate = np.concatenate([np.broadcast_to(v, lead + v.shape[-1:]) for v in parts], axis=-1)
-    return _known(rate, 1, X)
+    """Rate of X at the velocity V.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+
+    Returns:
+        X_dot: rate of X (..., NQ).
+    """
+    return _call(
+        "X_dot", _steps_X_dot, None,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+    )
 
 
-def _moved(X, step):
-    """X moved by a small twist: the quaternion turns by its angular part."""
-    w = step[_Q : _Q + 3]
-    angle = np.linalg.norm(w)
-    turn = np.append(w * (0.5 * np.sinc(angle / (2 * np.pi))), np.cos(0.5 * angle))
-    a, q = turn, _unit(X[_Q : _Q + 4])
-    vector = a[3] * q[:3] + q[3] * a[:3] + np.cross(a[:3], q[:3])
-    scalar = a[3] * q[3] - a[:3] @ q[:3]
-    return np.concatenate((X[:_Q] + step[:_Q], vector, [scalar], X[_Q + 4 :] + step[_Q + 3 :]))
+def pose_from_rpy(t, rpy):
+    """X from roll, pitch, yaw about the fixed axes x, y, z, in that order.
+
+    Args:
+        t: position of the platform origin [m] (..., 3).
+        rpy: roll, pitch, yaw about the fixed axes x, y, z [rad] (..., 3).
+
+    Returns:
+        X: pose (..., NQ).
+    """
+    return _call(
+        "pose_from_rpy", _steps_pose_from_rpy, None,
+        ("t", t, (3,)),
+        ("rpy", rpy, (3,)),
+    )

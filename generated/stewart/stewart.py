@@ -19,7 +19,9 @@ arrays, ValueError for wrong shapes.  p, a Parameters of this module, follows wh
 position or keyword; all else is given by keyword.
 """
 
+import math
 import warnings
+from itertools import compress
 from numbers import Real
 
 import numpy as np
@@ -31,11 +33,12 @@ __all__ = [
     "NC",
     "NW",
     "NJ",
+    "H",
     "HOME_Q",
     "HOME_X",
-    "H",
     "M",
     "Parameters",
+    "X_dot",
     "Z",
     "complete_acceleration",
     "condition",
@@ -52,7 +55,6 @@ __all__ = [
     "pose",
     "pose_from_rpy",
     "rotation",
-    "X_dot",
 ]
 
 NQ = 7
@@ -65,13 +67,7 @@ NJ = 18
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
 
-_LEGS = {  # positions of the legs of each type
-    "ups": (0, 1, 2, 3, 4, 5),
-}
 _DRIVEN_JOINTS = (2, 5, 8, 11, 14, 17)
-_TURNING_DRIVES = ()
-_ACTUATOR_LEGS = (0, 1, 2, 3, 4, 5)
-_DRIVEN_ROWS = (0, 1, 2, 3, 4, 5)
 
 _DEFAULTS = {
     "gravity": [0.0, 0.0, -9.81],
@@ -286,24 +282,32 @@ def _unfit(value):
     return "" if array.dtype.kind in "iuf" else _KINDS.get(array.dtype.kind, array.dtype.name)
 
 
-def _vector(function, name, value, size):
-    """An argument as an array of floats (..., size), or an error that names it."""
+def _argument(function, name, value, shape, default=None, rule=""):
+    """An argument as an array of floats (..., *shape), or an error that names it."""
+    if value is None and default is not None:
+        return np.full(shape, default)
+    function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
-        value = _numbers(function, name, value)
-    if value.ndim == 0 or value.shape[-1] != size:
-        raise ValueError(f"{function}: {name} has shape {value.shape}, expected (..., {size})")
-    return value
+        array = _numbers(function, name, value)
+    if not shape:
+        if array.shape or not 0.0 < array < np.inf:
+            raise ValueError(f"{function}: {name} is {value!r}, expected a positive number")
+    elif array.shape[-len(shape) :] != shape:
+        wanted = ", ".join(map(str, ("...", *shape)))
+        raise ValueError(f"{function}: {name} has shape {array.shape}, expected ({wanted})")
+    elif rule == "positive" and not np.all((array > 0.0) & (array < np.inf)):
+        raise ValueError(f"{function}: {name} must be positive and finite")
+    return array
 
 
-def _lead(**arguments):
-    """Leading shape that arguments (..., n) have in common; ValueError that names them if none."""
-    leads = [v.shape[:-1] for v in arguments.values()]
-    if not any(leads):
+def _lead(leads):
+    """Leading shape that arguments have in common; ValueError that names them if none."""
+    if not any(leads.values()):
         return ()
     try:
-        return np.broadcast_shapes(*leads)
+        return np.broadcast_shapes(*leads.values())
     except ValueError:
-        shapes = ", ".join(f"{name} {lead}" for name, lead in zip(arguments, leads))
+        shapes = ", ".join(f"{name} {lead}" for name, lead in leads.items())
         raise ValueError(f"leading dimensions do not broadcast: {shapes}") from None
 
 
@@ -395,7 +399,6 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
-    _ups = (len(_LEGS["ups"]),)
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     gravity_z = p.gravity[2]
@@ -555,19 +558,19 @@ def _prepare(p):
     ups_base_frame_xz*ups_base_point_x + ups_base_frame_yz*ups_base_point_y +
         ups_base_frame_zz*ups_base_point_z
     )
-    total_ups = np.sum(np.broadcast_to(ups_link3_mass, _ups))
-    total_ups_x = np.sum(np.broadcast_to(h_star_t_4, _ups))
-    total_ups_y = np.sum(np.broadcast_to(h_star_t_5, _ups))
-    total_ups_z = np.sum(np.broadcast_to(h_star_t_6, _ups))
-    total_ups_xx = np.sum(np.broadcast_to(J_star_t_15, _ups))
-    total_ups_xy = np.sum(np.broadcast_to(J_star_t_16, _ups))
-    total_ups_xz = np.sum(np.broadcast_to(J_star_t_17, _ups))
-    total_ups_yy = np.sum(np.broadcast_to(J_star_t_18, _ups))
-    total_ups_yz = np.sum(np.broadcast_to(J_star_t_19, _ups))
-    total_ups_zz = np.sum(np.broadcast_to(J_star_t_20, _ups))
-    total_ups_x_2 = np.sum(np.broadcast_to(ups_platform_point_x, _ups))
-    total_ups_y_2 = np.sum(np.broadcast_to(ups_platform_point_y, _ups))
-    total_ups_z_2 = np.sum(np.broadcast_to(ups_platform_point_z, _ups))
+    total_ups = np.sum(np.broadcast_to(ups_link3_mass, 6))
+    total_ups_x = np.sum(np.broadcast_to(h_star_t_4, 6))
+    total_ups_y = np.sum(np.broadcast_to(h_star_t_5, 6))
+    total_ups_z = np.sum(np.broadcast_to(h_star_t_6, 6))
+    total_ups_xx = np.sum(np.broadcast_to(J_star_t_15, 6))
+    total_ups_xy = np.sum(np.broadcast_to(J_star_t_16, 6))
+    total_ups_xz = np.sum(np.broadcast_to(J_star_t_17, 6))
+    total_ups_yy = np.sum(np.broadcast_to(J_star_t_18, 6))
+    total_ups_yz = np.sum(np.broadcast_to(J_star_t_19, 6))
+    total_ups_zz = np.sum(np.broadcast_to(J_star_t_20, 6))
+    total_ups_x_2 = np.sum(np.broadcast_to(ups_platform_point_x, 6))
+    total_ups_y_2 = np.sum(np.broadcast_to(ups_platform_point_y, 6))
+    total_ups_z_2 = np.sum(np.broadcast_to(ups_platform_point_z, 6))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_ups
     # (L2) first moment about the platform origin
@@ -593,115 +596,168 @@ def _prepare(p):
     b_c_x = 0.16666666666666666*total_ups_x_2
     b_c_y = 0.16666666666666666*total_ups_y_2
     b_c_z = 0.16666666666666666*total_ups_z_2
-    shared = {
-        "J_star_t_22": float(J_star_t_22),
-        "J_star_t_24": float(J_star_t_24),
-        "J_star_xx": float(J_star_xx),
-        "J_star_xy": float(J_star_xy),
-        "J_star_xz": float(J_star_xz),
-        "J_star_yy": float(J_star_yy),
-        "J_star_yz": float(J_star_yz),
-        "J_star_zz": float(J_star_zz),
-        "Z_p_t": float(Z_p_t),
-        "Z_p_t_2": float(Z_p_t_2),
-        "Z_p_t_3": float(Z_p_t_3),
-        "b_c_x": float(b_c_x),
-        "b_c_y": float(b_c_y),
-        "b_c_z": float(b_c_z),
-        "gravity_x": float(gravity_x),
-        "gravity_y": float(gravity_y),
-        "gravity_z": float(gravity_z),
-        "h_star_x": float(h_star_x),
-        "h_star_y": float(h_star_y),
-        "h_star_z": float(h_star_z),
-        "legs_size": float(legs_size),
-        "m_star": float(m_star),
-        "spread_t": float(spread_t),
+    return {
+        "dynamics": (
+        (J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
+                J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x,
+                h_star_y, h_star_z, m_star,),
+            (
+                (6,
+        (J_group_2_xx, J_group_2_xy, J_group_2_xz, J_group_2_yy, J_group_2_yz, J_group_2_zz,
+                    Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1, branch_2, g_r0_x, g_r0_y,
+                    g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, ups_base_frame_xx,
+                    ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
+                    ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
+                    ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_platform_point_x,
+                    ups_platform_point_y, ups_platform_point_z,),
+                ),
+            ),
+        ),
+        "M": (
+        (J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
+                h_star_z, m_star,),
+            (
+                (6,
+        (J_group_2_xx, J_group_2_xy, J_group_2_xz, J_group_2_yy, J_group_2_yz, J_group_2_zz,
+                    branch_1, branch_2, h_3_x, h_3_y, h_3_z, ups_base_frame_xx, ups_base_frame_xy,
+                    ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
+                    ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_platform_point_x,
+                    ups_platform_point_y, ups_platform_point_z,),
+                ),
+            ),
+        ),
+        "Z": (
+        (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2,
+                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
+            (
+                (6,
+        (J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
+                    branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
+                    ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
+                ),
+            ),
+        ),
+        "H": (
+        (),
+            (
+                (6,
+        (branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
+                ),
+            ),
+        ),
+        "required": (
+        (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
+                gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
+            (
+                (6,
+        (J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
+                    branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
+                    ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
+                ),
+            ),
+        ),
+        "inverse_kinematics": (
+        (),
+            (
+                (6,
+        (branch_1, branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
+                    ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
+                    ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
+                    ups_base_point_z, ups_platform_point_x, ups_platform_point_y,
+                    ups_platform_point_z,),
+                ),
+            ),
+        ),
+        "joint_rates": (
+        (),
+            (
+                (6,
+        (branch_1, branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
+                    ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
+                    ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
+                    ups_base_point_z, ups_platform_point_x, ups_platform_point_y,
+                    ups_platform_point_z,),
+                ),
+            ),
+        ),
+        "joint_accelerations": (
+        (),
+            (
+                (6,
+        (branch_1, branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
+                    ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
+                    ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
+                    ups_base_point_z, ups_platform_point_x, ups_platform_point_y,
+                    ups_platform_point_z,),
+                ),
+            ),
+        ),
+        "legs": (
+        (),
+            (
+                (6,
+        (J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
+                    branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
+                    ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+                    ups_link3_mass, ups_platform_point_x, ups_platform_point_y,
+                    ups_platform_point_z,),
+                ),
+            ),
+        ),
+        "potential": (
+        (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
+            (
+                (6,
+        (b_r0_x, b_r0_y, b_r0_z, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z,
+                    h_3_x, h_3_y, h_3_z, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
+                    ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
+                    ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
+                    ups_base_point_z, ups_link2_mass, ups_platform_point_x, ups_platform_point_y,
+                    ups_platform_point_z,),
+                ),
+            ),
+        ),
+        "condition": (
+        (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
+            (
+                (6,
+        (branch_1, branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
+                    ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
+                    ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
+                    ups_base_point_z, ups_platform_point_x, ups_platform_point_y,
+                    ups_platform_point_z,),
+                ),
+            ),
+        ),
     }
-    legs = {
-        "ups": {
-            "J_group_2_xx": np.broadcast_to(J_group_2_xx, _ups),
-            "J_group_2_xy": np.broadcast_to(J_group_2_xy, _ups),
-            "J_group_2_xz": np.broadcast_to(J_group_2_xz, _ups),
-            "J_group_2_yy": np.broadcast_to(J_group_2_yy, _ups),
-            "J_group_2_yz": np.broadcast_to(J_group_2_yz, _ups),
-            "J_group_2_zz": np.broadcast_to(J_group_2_zz, _ups),
-            "Sigma_2_xx": np.broadcast_to(Sigma_2_xx, _ups),
-            "Sigma_2_yy": np.broadcast_to(Sigma_2_yy, _ups),
-            "Sigma_2_zz": np.broadcast_to(Sigma_2_zz, _ups),
-            "b_r0_x": np.broadcast_to(b_r0_x, _ups),
-            "b_r0_y": np.broadcast_to(b_r0_y, _ups),
-            "b_r0_z": np.broadcast_to(b_r0_z, _ups),
-            "branch_1": np.broadcast_to(branch_1, _ups),
-            "branch_2": np.broadcast_to(branch_2, _ups),
-            "g_r0_x": np.broadcast_to(g_r0_x, _ups),
-            "g_r0_y": np.broadcast_to(g_r0_y, _ups),
-            "g_r0_z": np.broadcast_to(g_r0_z, _ups),
-            "h_2_x": np.broadcast_to(h_2_x, _ups),
-            "h_2_y": np.broadcast_to(h_2_y, _ups),
-            "h_2_z": np.broadcast_to(h_2_z, _ups),
-            "h_3_x": np.broadcast_to(h_3_x, _ups),
-            "h_3_y": np.broadcast_to(h_3_y, _ups),
-            "h_3_z": np.broadcast_to(h_3_z, _ups),
-            "ups_base_frame_xx": np.broadcast_to(ups_base_frame_xx, _ups),
-            "ups_base_frame_xy": np.broadcast_to(ups_base_frame_xy, _ups),
-            "ups_base_frame_xz": np.broadcast_to(ups_base_frame_xz, _ups),
-            "ups_base_frame_yx": np.broadcast_to(ups_base_frame_yx, _ups),
-            "ups_base_frame_yy": np.broadcast_to(ups_base_frame_yy, _ups),
-            "ups_base_frame_yz": np.broadcast_to(ups_base_frame_yz, _ups),
-            "ups_base_frame_zx": np.broadcast_to(ups_base_frame_zx, _ups),
-            "ups_base_frame_zy": np.broadcast_to(ups_base_frame_zy, _ups),
-            "ups_base_frame_zz": np.broadcast_to(ups_base_frame_zz, _ups),
-            "ups_base_point_x": np.broadcast_to(ups_base_point_x, _ups),
-            "ups_base_point_y": np.broadcast_to(ups_base_point_y, _ups),
-            "ups_base_point_z": np.broadcast_to(ups_base_point_z, _ups),
-            "ups_link2_mass": np.broadcast_to(ups_link2_mass, _ups),
-            "ups_link3_mass": np.broadcast_to(ups_link3_mass, _ups),
-            "ups_platform_point_x": np.broadcast_to(ups_platform_point_x, _ups),
-            "ups_platform_point_y": np.broadcast_to(ups_platform_point_y, _ups),
-            "ups_platform_point_z": np.broadcast_to(ups_platform_point_z, _ups),
-        },
-    }
-    return shared, legs
 
 
-class _Part:
-    """A piece of straight-line code: which prepared values it reads, where its results go."""
-
-    def __init__(self, function, names, passed, targets):
-        self.function, self.names, self.passed, self.targets = function, names, passed, targets
+_FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
 
 
-class _LegPart:
-    """A piece of straight-line code run once per leg of a type."""
-
-    def __init__(self, function, leg, names, leg_names, inputs, passed, sums, targets):
-        self.function, self.leg, self.names, self.leg_names = function, leg, names, leg_names
-        self.inputs, self.passed, self.sums, self.targets = inputs, passed, sums, targets
-
-
-class _Plan:
-    """A computation: before the legs, over the legs of each type, after the legs."""
-
-    def __init__(self, inputs, arrays, before, legs, after=None):
-        self.inputs, self.arrays = inputs, arrays
-        self.before, self.legs, self.after = before, legs, after
-
-    def constants(self, p):
-        """Prepared values in the order of the code: floats per leg, and arrays over legs."""
-        if self not in p._cache:
-            shared, legs = p._prepared()
-            tables = []
-            for part in self.legs:
-                columns = [legs[part.leg][n] for n in part.leg_names]
-                rows = [tuple(row) for row in np.array(columns).T.tolist()]
-                count = len(_LEGS[part.leg])
-                tables.append((tuple(shared[n] for n in part.names), rows or [()] * count,
-                               tuple(c[:, None] for c in columns)))
-            before = tuple(shared[n] for n in self.before.names)
-            after = tuple(shared[n] for n in self.after.names) if self.after else ()
-            p._cache[self] = before, tables, after
-        return p._cache[self]
+def _constants(p, name):
+    """Prepared values of a function: floats, and those of each loop over legs for both modes."""
+    if name not in p._cache:
+        shared, loops = p._prepared()[name]
+        rows, columns = [], []
+        for count, values in loops:
+            table = [np.broadcast_to(v, count) for v in values]
+            rows.append([(leg, tuple(float(v[leg]) for v in table)) for leg in range(count)])
+            columns.append([(slice(0, count), tuple(v[:, None] for v in table))])
+        p._cache[name] = tuple(map(float, shared)), rows, columns
+    return p._cache[name]
 
 
 def _sqrt(x):
@@ -709,117 +765,439 @@ def _sqrt(x):
 
 
 class _Floats:
-    """Functions on Python floats: the way for single states."""
+    """Functions of a state after another, in Python floats: the way for few states."""
 
     sqrt = staticmethod(_sqrt)
     sin = staticmethod(lambda x: float(np.sin(x)))
     cos = staticmethod(lambda x: float(np.cos(x)))
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
     least = staticmethod(lambda x, y: float(np.minimum(x, y)))
+    every = staticmethod(lambda good: good)
+
+    def __init__(self, p, states):
+        self.p, self.states = p, states
+
+    def constants(self, name):
+        """Shared values, and (leg, its values) for every leg of each loop."""
+        return _constants(self.p, name)[:2]
+
+    def zeros(self, size):
+        return [0.0] * size
+
+    def added(self, sums, leg, terms):
+        """Sums over the legs so far."""
+        return [a + b for a, b in zip(sums, terms)]
+
+    def run(self, function, shapes, *vectors):
+        """Arrays (*shape, states) of a function; NaN where the state is impossible."""
+        found = [np.full((self.states, math.prod(shape)), np.nan) for shape in shapes]
+        rows = [v.T.tolist() for v in vectors]
+        for k in range(self.states):
+            try:
+                ok, arrays = function(self, *(row[k] for row in rows))
+            except (ZeroDivisionError, OverflowError):
+                continue
+            if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
+                for a, array in zip(found, arrays):
+                    a[k] = array
+        return [a.T.reshape(*shape, self.states) for a, shape in zip(found, shapes)]
 
 
 class _Arrays:
-    """Functions on arrays over states: the way for batches."""
+    """Functions of many states at once: arrays (states,), and (legs, states)."""
 
     sqrt, sin, cos, atan2, least = np.sqrt, np.sin, np.cos, np.arctan2, np.minimum
 
+    def __init__(self, p, states):
+        self.p, self.states = p, states
 
-_FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
+    def constants(self, name):
+        """Shared values, and (all legs, their values) once for each loop."""
+        shared, _, columns = _constants(self.p, name)
+        return shared, columns
+
+    def zeros(self, size):
+        return np.zeros((size, self.states))
+
+    def every(self, good):
+        """Whether it holds for all legs."""
+        return np.logical_and.reduce(good, axis=0)
+
+    def added(self, sums, legs, terms):
+        """Sums over the legs, all at once."""
+        shape = (legs.stop, self.states)
+        return [np.add.reduce(np.broadcast_to(t, shape), axis=0) for t in terms]
+
+    def run(self, function, shapes, *vectors):
+        """Arrays (*shape, states) of a function; NaN where the state is impossible."""
+        ok, arrays = function(self, *vectors)
+        for a in arrays:
+            ok = ok & np.isfinite(a).all(axis=0)
+        if not np.all(ok):
+            for a in arrays:
+                a[:, ~ok] = np.nan
+        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
 
 
-def _evaluate(plan, p, **vectors):
-    """Arrays of a plan at the vectors that it reads."""
-    p = _given(p)
-    lead = _lead(**vectors)
-    chosen = [np.broadcast_to(vectors[k], lead + vectors[k].shape[-1:]) for k in plan.inputs]
-    return _run(plan, p, *chosen)
+class _Judged(_Arrays):
+    """The same, and why a state is impossible."""
+
+    def __init__(self, p, states):
+        super().__init__(p, states)
+        self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
+
+    def run(self, function, shapes, *vectors):
+        """Arrays (*shape, states) of a function, also where they are nonsense."""
+        (valid, reached, clear), arrays = function(self, *vectors)
+        for code, good in ((3, valid), (1, reached), (2, clear)):
+            self.failed[code] |= ~np.broadcast_to(good, self.states)
+        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+
+    def closed(self, q):
+        """q, noting where the iteration has not converged."""
+        self.failed[4] |= np.isnan(q).any(axis=0)
+        return q
+
+    def status(self, possible):
+        """Status codes; 3 where all is well but some input or result is not finite."""
+        return np.select(list(self.failed.values()), list(self.failed), np.where(possible, 0, 3))
 
 
-def _run(plan, p, *vectors):
-    """Arrays of a plan for one state or many; NaN where the state is impossible."""
-    lead = np.broadcast_shapes(*(v.shape[:-1] for v in vectors))
-    count = int(np.prod(lead, dtype=int))
-    flat = [np.broadcast_to(v, lead + v.shape[-1:]).reshape(count, v.shape[-1]) for v in vectors]
-    outputs = [np.zeros((count, int(np.prod(shape, dtype=int)))) for _, shape in plan.arrays]
-    possible = np.ones(count, dtype=bool)
+def _mode(p, states):
+    """The faster way for so many states."""
+    return _Floats(p, states) if 0 < states <= _FEW else _Arrays(p, states)
+
+
+def _call(function, steps, p, *arguments, mode=_mode):
+    """What the steps give at arguments (name, value, shape of a state, default, rule)."""
+    given = [_argument(function, *a) for a in arguments]
+    shapes = [a[2] for a in arguments]
+    leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
+    lead, p = _lead(leads), _given(p)
+    read = [a[4:] != ("unused",) for a in arguments]
+    if lead or mode is _Judged:
+        results = _many(steps, p, lead, given, shapes, read, mode)
+    else:
+        results = _one(steps, p, given, shapes, read)
+    return results[0] if len(results) == 1 else tuple(results)
+
+
+def _one(steps, p, given, shapes, read):
+    """Results at a single state."""
+    states = [v.reshape(*shape, 1) for v, shape in zip(given, shapes)]
     with np.errstate(all="ignore"):
-        if count <= _FEW:
-            rows = [v.tolist() for v in flat]
-            for i in range(count):
-                possible[i] = _run_one(plan, p, [r[i] for r in rows], [o[i] for o in outputs])
-        else:
-            for i in range(0, count, _BLOCK):
-                block = slice(i, i + _BLOCK)
-                possible[block] = _run_block(
-                    plan, p, [np.ascontiguousarray(v[block].T) for v in flat],
-                    [o[block] for o in outputs])
-        for v in (*flat, *outputs):
-            possible &= np.isfinite(v).all(axis=1)
-    for o in outputs:
-        o[~possible] = np.nan
-    return [o.reshape(lead + shape) for o, (_, shape) in zip(outputs, plan.arrays)]
+        results = [a[..., 0] for a in steps(_Floats(p, 1), *states)]
+    if all(all(map(math.isfinite, v.ravel().tolist())) for v in (*compress(given, read), *results)):
+        return [np.array(a)[()] for a in results]
+    return [np.full(a.shape, np.nan)[()] for a in results]
 
 
-def _run_one(plan, p, vectors, outputs):
-    """One state with Python floats; False if it is impossible."""
-    constants, tables, after = plan.constants(p)
-    try:
-        ok, shared, stores = plan.before.function(constants, *vectors, _Floats)
-        for (array, index), value in zip(plan.before.targets, stores):
-            outputs[array][index] = value
-        sums = []
-        for part, (c, rows, _) in zip(plan.legs, tables):
-            s = [shared[k] for k in part.passed]
-            totals = [0.0] * part.sums
-            for leg, k in enumerate(rows):
-                x = [vectors[plan.inputs.index(v)][index[leg]] for v, index in part.inputs]
-                good, terms, stores = part.function(c, k, x, s, _Floats)
-                ok = ok and good
-                totals = [a + b for a, b in zip(totals, terms)]
-                for (array, index), value in zip(part.targets, stores):
-                    outputs[array][index[leg]] = value
-            sums += totals
-        if plan.after:
-            s = [shared[k] for k in plan.after.passed]
-            good, stores = plan.after.function(after, s, sums, _Floats)
-            ok = ok and good
-            for (array, index), value in zip(plan.after.targets, stores):
-                outputs[array][index] = value
-    except (ZeroDivisionError, OverflowError):
-        return False
-    return ok
+def _many(steps, p, lead, given, shapes, read, mode):
+    """Results at many states, block by block."""
+    count = math.prod(lead)
+    flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
+    possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
+    with np.errstate(all="ignore"):
+        for first in range(0, max(count, 1), _BLOCK):
+            block = slice(first, min(first + _BLOCK, count))
+            states = [_states_last(v[block]) for v in flat]
+            m, good = mode(p, block.stop - first), possible[block]
+            found = steps(m, *states)
+            if not outputs:
+                outputs = [np.empty((count, *a.shape[:-1])) for a in found]
+            _all_finite(compress(states, read), good)
+            if mode is _Judged:
+                m.failed[3] |= ~good
+            _all_finite(found, good)
+            if mode is _Judged:
+                status[block] = m.status(good)
+                good[:] = status[block] == 0
+            for output, a in zip(outputs, found):
+                output[block] = a.transpose(a.ndim - 1, *range(a.ndim - 1))
+    for output in outputs:
+        output[~possible] = np.nan
+    outputs += [status] if mode is _Judged else []
+    return [a.reshape(lead + a.shape[1:])[()] for a in outputs]
 
 
-def _run_block(plan, p, vectors, outputs):
-    """Many states at once, arrays (states,) and (legs, states); which are possible."""
-    constants, tables, after = plan.constants(p)
-    ok, shared, stores = plan.before.function(constants, *vectors, _Arrays)
-    for (array, index), value in zip(plan.before.targets, stores):
-        outputs[array][:, index] = value
-    sums = []
-    for part, (c, _, columns) in zip(plan.legs, tables):
-        legs, states = len(_LEGS[part.leg]), outputs[0].shape[0]
-        x = [vectors[plan.inputs.index(v)][list(index)] for v, index in part.inputs]
-        s = [shared[k] for k in part.passed]
-        good, terms, stores = part.function(c, columns, x, s, _Arrays)
-        ok = ok & np.all(good, axis=0)
-        sums += [np.sum(np.broadcast_to(t, (legs, states)), axis=0) for t in terms]
-        for (array, index), value in zip(part.targets, stores):
-            outputs[array][:, list(index)] = np.broadcast_to(value, (legs, states)).T
-    if plan.after:
-        good, stores = plan.after.function(after, [shared[k] for k in plan.after.passed], sums, _Arrays)
-        ok = ok & good
-        for (array, index), value in zip(plan.after.targets, stores):
-            outputs[array][:, index] = value
-    return ok
+def _states_last(a):
+    """A contiguous array (*shape, states) of one (states, *shape)."""
+    return np.ascontiguousarray(a.transpose(*range(1, a.ndim), 0))
+
+
+def _all_finite(arrays, good):
+    """Clear the flags of states in which some entry is not finite."""
+    for a in arrays:
+        good &= np.isfinite(a).all(axis=tuple(range(a.ndim - 1)))
+
+
+def _with_forces(a, amounts, directions, legs):
+    """a, to whose row of a leg its directions times amounts are added."""
+    result = np.array(a)
+    for k, leg in enumerate(legs):
+        result[leg] += amounts[k] * directions[k]
+    return result
+
+
+def _rows_divided(a, b, places):
+    """a, some rows divided by b."""
+    result = np.array(a)
+    result[places] /= b
+    return result
+
+
+def _chosen_length(a, b):
+    """b where it is positive; else the first of a, or where that is nothing the second."""
+    return np.where(b > 0.0, b, np.where(a[0] > 1e-09 * a[1], a[0], a[1]))
+
+
+def _scaled(q):
+    """Quaternions with largest entry 1, so that squares of tiny ones keep their digits."""
+    size = np.max(np.abs(q), axis=0)
+    return q / np.where(np.isfinite(np.sum(q * q, axis=0)), size, np.nan)
+
+
+def _unit(q):
+    """Quaternions of length 1."""
+    q = _scaled(q)
+    return q / np.sqrt(np.sum(q * q, axis=0))
+
+
+def _rotation_of_quaternion(q):
+    """Rotation matrices (3, 3, states)."""
+    x, y, z, w = _scaled(q)
+    xx, yy, zz, ww = x * x, y * y, z * z, w * w
+    return np.array((
+        (xx + ww - (yy + zz), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+        (2 * (x * y + w * z), yy + ww - (xx + zz), 2 * (y * z - w * x)),
+        (2 * (x * z - w * y), 2 * (y * z + w * x), zz + ww - (xx + yy)),
+    )) / (xx + yy + zz + ww)
+
+
+def _quaternion_of_rotation(R):
+    """x, y, z, w of rotation matrices."""
+    # each candidate is four times the quaternion times one of its entries; take the longest
+    s = R[2, 1] + R[1, 2], R[0, 2] + R[2, 0], R[1, 0] + R[0, 1]
+    a = R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]
+    x, y, z = R[0, 0], R[1, 1], R[2, 2]
+    candidates = np.array((
+        (1 + x - y - z, s[2], s[1], a[0]),
+        (s[2], 1 - x + y - z, s[0], a[1]),
+        (s[1], s[0], 1 - x - y + z, a[2]),
+        (a[0], a[1], a[2], 1 + x + y + z),
+    ))
+    best = np.argmax(np.sum(candidates * candidates, axis=1), axis=0)
+    return _unit(candidates[best, :, np.arange(len(best))].T)
+
+
+def _quaternion_of_rpy(a):
+    """x, y, z, w of roll, pitch, yaw about the fixed axes x, y, z."""
+    (cx, cy, cz), (sx, sy, sz) = np.cos(0.5 * a), np.sin(0.5 * a)
+    return np.array((
+        sx * cy * cz - cx * sy * sz, cx * sy * cz + sx * cy * sz,
+        cx * cy * sz - sx * sy * cz, cx * cy * cz + sx * sy * sz,
+    ))
+
+
+def _quaternion_rate(q, w):
+    """Rate of a quaternion at an angular velocity."""
+    vector = 0.5 * (q[3] * w + np.cross(w, q[:3], axis=0))
+    return np.concatenate((vector, -0.5 * np.sum(w * q[:3], axis=0)[None]))
+
+
+def _turned(q, b):
+    """Quaternions turned by rotation vectors b."""
+    angle, q = np.sqrt(np.sum(b * b, axis=0)), _unit(q)
+    v, c = b * (0.5 * np.sinc(angle / (2.0 * np.pi))), np.cos(0.5 * angle)
+    vector = c * q[:3] + q[3] * v + np.cross(v, q[:3], axis=0)
+    return np.concatenate((vector, (c * q[3] - np.sum(v * q[:3], axis=0))[None]))
+
+
+def _moved(X, step):
+    """X moved by small displacements."""
+    if _Q is None:
+        return X + step
+    q = _turned(X[_Q : _Q + 4], step[_Q : _Q + 3])
+    return np.concatenate((X[:_Q] + step[:_Q], q, X[_Q + 4 :] + step[_Q + 3 :]))
+
+
+_PIVOT = 1.8e-12  # a pivot below this fraction of its row counts as zero (epsilon^(3/4))
+_CLEARLY = 2.0  # rows change places only for a pivot that is larger by this factor
+
+
+def _solve(a, b):
+    """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
+    n, states = b.shape
+    if 0 < states <= _FEW:
+        matrices, rights = np.moveaxis(a, -1, 0).tolist(), b.T.tolist()
+        return np.array([_solve_one(*each) for each in zip(matrices, rights)]).T.reshape(n, states)
+    size = np.max(np.abs(a), axis=1, initial=0.0)
+    good = np.all((size > 0.0) & np.isfinite(size), axis=0)
+    rows = np.concatenate((a, b[:, None]), axis=1)
+    rows /= size[:, None]
+    for k in range(n):
+        column = np.abs(rows[k:, k])
+        best = np.argmax(column, axis=0)
+        at = np.flatnonzero(best)
+        at = at[column[best[at], at] > _CLEARLY * column[0, at]]
+        if at.size:
+            other = k + best[at]
+            upper, lower = rows[k, k:, at], rows[other, k:, at]
+            rows[k, k:, at], rows[other, k:, at] = lower, upper
+        pivot = rows[k, k]
+        good &= np.abs(pivot) > _PIVOT
+        factor = rows[k + 1 :, k] / pivot
+        rows[k + 1 :, k + 1 :] -= factor[:, None] * rows[k, k + 1 :]
+    x = np.empty((n, states))
+    for k in reversed(range(n)):
+        known = np.einsum("js,js->s", rows[k, k + 1 : n], x[k + 1 :])
+        x[k] = (rows[k, n] - known) / rows[k, k]
+    x[:, ~(good & np.isfinite(x).all(axis=0))] = np.nan
+    return x
+
+
+def _solve_one(a, b):
+    """The same for one system of nested lists."""
+    n = len(b)
+    failure = [np.nan] * n
+    for i, row in enumerate(a):
+        size = max(map(abs, row), default=0.0)
+        if not 0.0 < size < np.inf:
+            return failure
+        a[i] = [v / size for v in row] + [b[i] / size]
+    for k in range(n):
+        best = max(range(k, n), key=lambda i: abs(a[i][k]))
+        if abs(a[best][k]) > _CLEARLY * abs(a[k][k]):
+            a[k], a[best] = a[best], a[k]
+        if not abs(a[k][k]) > _PIVOT:
+            return failure
+        head = a[k]
+        for i in range(k + 1, n):
+            factor = a[i][k] / head[k]
+            a[i] = [v - factor * h for v, h in zip(a[i], head)]
+    x = [0.0] * n
+    for k in reversed(range(n)):
+        x[k] = (a[k][n] - sum(a[k][j] * x[j] for j in range(k + 1, n))) / a[k][k]
+    return x if all(map(math.isfinite, x)) else failure
+
+
+def _matrices(a, *others):
+    """Matrices with the states first, zero where something is not finite; and where that is."""
+    bad = ~np.isfinite(a).all(axis=(0, 1))
+    for b in others:
+        bad |= ~np.isfinite(b).all(axis=0)
+    a = np.moveaxis(a, -1, 0)
+    return (np.where(bad[:, None, None], 0.0, a) if bad.any() else a), bad
+
+
+def _null_basis(a, rank):
+    """Orthonormal columns x with a x = 0, for a of so high a rank."""
+    a, bad = _matrices(a)
+    _, _, vt = np.linalg.svd(a)
+    basis = vt[:, rank:].transpose(2, 1, 0).copy()
+    basis[..., bad] = np.nan
+    return basis
+
+
+def _singular_values(a):
+    """Singular values, in descending order."""
+    a, bad = _matrices(a)
+    values = np.linalg.svd(a, compute_uv=False).T.copy()
+    values[:, bad] = np.nan
+    return values
+
+
+def _least_squares(a, b, least):
+    """x of least norm with the least a x - b; singular values below a fraction count as zero."""
+    a, bad = _matrices(a, b)
+    x = (np.linalg.pinv(a, rcond=least) @ b.T[..., None])[..., 0].T
+    x[:, bad] = np.nan
+    return x
+
+
+def _search(m, residual, slope, X, given, guess, halving):
+    """The pose at which residual(mode, X, *given) vanishes, by Gauss-Newton from X.
+
+    slope(mode, X, *guess) is its derivative, transposed, negative.  Steps are halved until the
+    residual is smaller, or taken as they are.  NaN where no pose is found.
+    """
+    X = np.array(X)
+    gap = np.array(_at(m, residual, X, given, slice(None)))
+    size = np.max(np.abs(gap), axis=0, initial=0.0)
+    open_ = np.isfinite(size) & np.isfinite(X).all(axis=0)
+    size[~open_] = np.inf
+    for _ in range(50):
+        at = np.flatnonzero(open_ & (size >= 1e-14))
+        if not at.size:
+            break
+        a = _at(m, slope, X, guess, at)
+        step = _least_squares(np.swapaxes(a, 0, 1), gap[:, at], 1e-10)
+        stopped = ~np.isfinite(step).all(axis=0)
+        size[at[stopped]] = np.inf
+        open_[at[stopped]] = False
+        at, step = at[~stopped], step[:, ~stopped]
+        for _ in range(12 if halving else 1):
+            trial = np.array(X)
+            trial[:, at] = _moved(X[:, at], step)
+            trial_gap = _at(m, residual, trial, given, at)
+            trial_size = np.max(np.abs(trial_gap), axis=0, initial=0.0)
+            good = trial_size < size[at] if halving else np.ones(at.size, dtype=bool)
+            taken = at[good]
+            X[:, taken], gap[:, taken], size[taken] = trial[:, taken], trial_gap[:, good], trial_size[good]
+            if not halving:
+                lost = ~np.isfinite(size[taken])
+                size[taken[lost]] = np.inf
+                open_[taken[lost | (np.max(np.abs(step), axis=0) < 0.1 * 1e-14)]] = False
+            at, step = at[~good], 0.5 * step[:, ~good]
+            if not at.size:
+                break
+        open_[at] = False
+    X[:, ~(size < 1e-09)] = np.nan
+    return X
+
+
+def _at(m, function, X, given, at):
+    """The array of a function at some of the states."""
+    X, given = X[:, at], [v[..., at] for v in given]
+    (found,) = function(_mode(m.p, X.shape[1]), X, *given)
+    return found
+
+
+def _rotations(R, n, nearest):
+    """Rotation matrices (..., n, n): R as it is, or the nearest; those with NaN stay."""
+    R = np.array(_numbers("pose", "R", R))
+    if R.shape[-2:] != (n, n):
+        raise ValueError(f"pose: R has shape {R.shape}, expected (..., {n}, {n})")
+    known = np.isfinite(R).all(axis=(-1, -2))
+    if nearest:
+        R[known] = _nearest(R[known])
+    if not np.all(_are_rotations(R[known])):
+        raise ValueError(
+            "pose: R is no rotation matrix, with orthonormal rows to 1e-06 and determinant +1;"
+            " nearest=True takes the nearest one")
+    return R
+
+
+def _nearest(R):
+    """The nearest rotations (k, n, n); ValueError where several are."""
+    largest = np.max(np.abs(R), axis=(1, 2), keepdims=True)
+    u, s, vt = np.linalg.svd(R / np.where(largest > 0.0, largest, 1.0))
+    sign = np.sign(np.linalg.det(u @ vt))
+    if np.any(s[:, -2] + sign * s[:, -1] <= 1e-06 * s[:, 0]):
+        raise ValueError("pose: R has no single nearest rotation")
+    u[:, :, -1] *= sign[:, None]
+    return u @ vt
 
 
 # dynamics: 1590 mul, 1248 add, 12 div, 12 sqrt, 0 trig
-def _dynamics_before(c, X, V, f):
+def _run_dynamics(m, X, V):
+    sqrt = m.sqrt
+    shared, legs = m.constants("dynamics")
     (
     J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
         Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
-    ) = c
+        m_star,
+    ) = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -867,6 +1245,11 @@ def _dynamics_before(c, X, V, f):
     omega_x = V_3
     omega_y = V_4
     omega_z = V_5
+    ok = True
+    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    out_M = m.zeros(36)
+    out_Z = m.zeros(6)
+    out_H = m.zeros(36)
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -917,263 +1300,266 @@ def _dynamics_before(c, X, V, f):
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
-    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    return (
-    ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
-        t_dot_z, omega_x, omega_y, omega_z, h_star_in_base_x, h_star_in_base_y, h_star_in_base_z,
-        J_star_t_8, J_star_t_9, J_star_t_10, J_star_t_12, J_star_t_13, J_star_t_15, W_p_xx,
-        W_p_xy, W_p_xz, W_p_yy, W_p_yz, W_p_zz, Z_p_x, Z_p_y, Z_p_z, Z_q_in_base_x, Z_q_in_base_y,
-        Z_q_in_base_z,), (),
-    )
-
-
-def _dynamics_ups(c, k, x, s, f):
-    sqrt = f.sqrt
-    (
-    J_group_2_xx, J_group_2_xy, J_group_2_xz, J_group_2_yy, J_group_2_yz, J_group_2_zz,
-        Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x,
-        h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, ups_base_frame_xx, ups_base_frame_xy,
-        ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-        ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
-        ups_base_point_y, ups_base_point_z, ups_platform_point_x, ups_platform_point_y,
-        ups_platform_point_z,
-    ) = k
-    (
-    t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
-        t_dot_z, omega_x, omega_y, omega_z, W_p_xx, W_p_xy, W_p_xz, W_p_yy, W_p_yz, W_p_zz,
-    ) = s
-    # (ups-K1) from the base point to the connection point
-    q_in_base_x = (
-    R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
-    )
-    q_in_base_y = (
-    R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
-    )
-    q_in_base_z = (
-    R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
-    )
-    S_x = q_in_base_x + t_x - ups_base_point_x
-    S_y = q_in_base_y + t_y - ups_base_point_y
-    S_z = q_in_base_z + t_z - ups_base_point_z
-    # (ups-K2) component along the reference direction
-    px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx
-    # (ups-K3) component across the reference direction
-    py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy
-    # (ups-K4) squared amplitude
-    rho2_1 = px_1*px_1 + py_1*py_1
-    # (ups-K5) amplitude, with the sign of the branch
-    root_1 = branch_1*sqrt(rho2_1)
-    # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
-    xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz
-    # (ups-K13) squared amplitude
-    rho2_2 = rho2_1 + xi_1_t*xi_1_t
-    # (ups-K14) amplitude, with the sign of the branch
-    root_2 = branch_2*sqrt(rho2_2)
-    # (ups-K15) cosine of the angle of joint 2 from its reference direction
-    inv_root_2 = 1.0/root_2
-    c_2 = inv_root_2*root_1
-    # (ups-K16) sine of the angle of joint 2 from its reference direction
-    s_2 = inv_root_2*xi_1_t
-    # (ups-V5) reciprocal vector 1
-    axis_x_x = S_x*inv_root_2
-    axis_x_y = S_y*inv_root_2
-    axis_x_z = S_z*inv_root_2
-    # (ups-K6) cosine of the angle of joint 1 from its reference direction
-    inv_root_1 = 1.0/root_1
-    c_1 = inv_root_1*py_1
-    # (ups-K7) sine of the angle of joint 1 from its reference direction
-    s_1 = inv_root_1*px_1
-    # (ups-V5) reciprocal vector 1
-    axis_z_ups_axes2_in_base_x = s_1*ups_base_frame_xy - c_1*ups_base_frame_xx
-    axis_z_ups_axes2_in_base_y = s_1*ups_base_frame_yy - c_1*ups_base_frame_yx
-    axis_z_ups_axes2_in_base_z = s_1*ups_base_frame_zy - c_1*ups_base_frame_zx
-    axis_y_ups_axes2_x = axis_x_z*axis_z_ups_axes2_in_base_y - axis_x_y*axis_z_ups_axes2_in_base_z
-    axis_y_ups_axes2_y = axis_x_x*axis_z_ups_axes2_in_base_z - axis_x_z*axis_z_ups_axes2_in_base_x
-    axis_y_ups_axes2_z = axis_x_y*axis_z_ups_axes2_in_base_x - axis_x_x*axis_z_ups_axes2_in_base_y
-    # (ups-A14) coefficient of the acceleration in: angular acceleration of link 1
-    d_alpha_1_t = inv_root_1*s_2
-    # (ups-N22) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-    d_G_t = h_3_z*inv_root_2
-    # (ups-N6) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-    d_phi_3_t = h_3_y*inv_root_2
-    d_phi_3_t_2 = h_3_x*inv_root_2
-    # (ups-N25) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_yy = -d_phi_3_t_2 - inv_root_2*(h_3_x + J_group_2_zz*inv_root_2)
-    d_c_yz = d_alpha_1_t*h_3_y - inv_root_2*(J_group_2_xz*d_alpha_1_t - J_group_2_yz*inv_root_2)
-    d_c_zz = (
-    d_alpha_1_t*h_3_z - d_phi_3_t_2 - inv_root_1*(s_2*(J_group_2_xx*d_alpha_1_t - h_3_z -
-        J_group_2_xy*inv_root_2) - c_2*(J_group_2_xy*d_alpha_1_t - h_3_x -
-        J_group_2_yy*inv_root_2))
-    )
-    # (ups-N27) inertia of the leg at the connection point, without the mass gathered there
-    Q_t = 0.5*d_c_yy
-    Q_t_2 = 0.5*d_c_zz
-    Q_t_3 = Q_t*axis_y_ups_axes2_x + axis_z_ups_axes2_in_base_x*d_c_yz - axis_x_x*d_G_t
-    Q_t_4 = Q_t*axis_y_ups_axes2_y + axis_z_ups_axes2_in_base_y*d_c_yz - axis_x_y*d_G_t
-    Q_t_5 = Q_t*axis_y_ups_axes2_z + axis_z_ups_axes2_in_base_z*d_c_yz - axis_x_z*d_G_t
-    Q_t_6 = Q_t_2*axis_z_ups_axes2_in_base_x + axis_x_x*d_phi_3_t
-    Q_t_7 = Q_t_2*axis_z_ups_axes2_in_base_y + axis_x_y*d_phi_3_t
-    Q_t_8 = Q_t_2*axis_z_ups_axes2_in_base_z + axis_x_z*d_phi_3_t
-    Q_t_9 = Q_t_3*axis_y_ups_axes2_x + Q_t_6*axis_z_ups_axes2_in_base_x
-    Q_t_10 = 2.0*Q_t_9
-    Q_t_11 = (
-    Q_t_3*axis_y_ups_axes2_y + Q_t_4*axis_y_ups_axes2_x + Q_t_6*axis_z_ups_axes2_in_base_y +
-        Q_t_7*axis_z_ups_axes2_in_base_x
-    )
-    Q_t_12 = (
-    Q_t_3*axis_y_ups_axes2_z + Q_t_5*axis_y_ups_axes2_x + Q_t_6*axis_z_ups_axes2_in_base_z +
-        Q_t_8*axis_z_ups_axes2_in_base_x
-    )
-    Q_t_13 = Q_t_4*axis_y_ups_axes2_y + Q_t_7*axis_z_ups_axes2_in_base_y
-    Q_t_14 = 2.0*Q_t_13
-    Q_t_15 = (
-    Q_t_4*axis_y_ups_axes2_z + Q_t_5*axis_y_ups_axes2_y + Q_t_7*axis_z_ups_axes2_in_base_z +
-        Q_t_8*axis_z_ups_axes2_in_base_y
-    )
-    Q_t_16 = Q_t_5*axis_y_ups_axes2_z + Q_t_8*axis_z_ups_axes2_in_base_z
-    Q_t_17 = 2.0*Q_t_16
-    # (M2) coupling block of M
-    M_ta_t = Q_t_11*q_in_base_z
-    M_ta_t_2 = Q_t_12*q_in_base_y
-    M_ta_t_3 = M_ta_t - M_ta_t_2
-    M_ta_t_4 = Q_t_10*q_in_base_z - Q_t_12*q_in_base_x
-    M_ta_t_5 = Q_t_10*q_in_base_y - Q_t_11*q_in_base_x
-    M_ta_t_6 = Q_t_14*q_in_base_z - Q_t_15*q_in_base_y
-    M_ta_t_7 = Q_t_15*q_in_base_x
-    M_ta_t_8 = M_ta_t - M_ta_t_7
-    M_ta_t_9 = Q_t_11*q_in_base_y - Q_t_14*q_in_base_x
-    M_ta_t_10 = Q_t_15*q_in_base_z - Q_t_17*q_in_base_y
-    M_ta_t_11 = Q_t_12*q_in_base_z - Q_t_17*q_in_base_x
-    M_ta_t_12 = M_ta_t_7 - M_ta_t_2
-    # (M3) rotational block of M
-    M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y
-    M_aa_t_2 = M_ta_t_8*q_in_base_z - M_ta_t_11*q_in_base_y
-    M_aa_t_3 = M_ta_t_12*q_in_base_y + M_ta_t_9*q_in_base_z
-    M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x
-    M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z
-    M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x
-    # (ups-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-    g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
-    g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
-    g_r3_x = g_r0_z*s_2 - c_2*g_r1_y
-    g_r3_y = -c_2*g_r0_z - g_r1_y*s_2
-    # (ups-A1) centripetal acceleration of the connection point
-    u_1_x = W_p_xy*q_in_base_y + W_p_xz*q_in_base_z - W_p_xx*q_in_base_x
-    u_1_y = W_p_xy*q_in_base_x + W_p_yz*q_in_base_z - W_p_yy*q_in_base_y
-    u_1_z = W_p_xz*q_in_base_x + W_p_yz*q_in_base_y - W_p_zz*q_in_base_z
-    u_1_t = axis_y_ups_axes2_x*u_1_x
-    u_1_t_2 = axis_y_ups_axes2_y*u_1_y
-    u_1_t_3 = axis_y_ups_axes2_z*u_1_z
-    u_1_tip_z = (
-    axis_z_ups_axes2_in_base_x*u_1_x + axis_z_ups_axes2_in_base_y*u_1_y +
-        axis_z_ups_axes2_in_base_z*u_1_z
-    )
-    # (ups-N4) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-    acc_3_o_x = axis_x_x*u_1_x + axis_x_y*u_1_y + axis_x_z*u_1_z - g_r3_x
-    acc_3_o_y = u_1_t + u_1_t_2 + u_1_t_3 - g_r3_y
-    acc_3_o_z = u_1_tip_z - g_r1_x
-    # (ups-V1) velocity of the connection point
-    S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y
-    S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z
-    S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x
-    S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z
-    # (ups-V8) rate of joint 1
-    qd_2 = (
-    inv_root_2*(S_dot_x*axis_y_ups_axes2_x + S_dot_y*axis_y_ups_axes2_y +
-        S_dot_z*axis_y_ups_axes2_z)
-    )
-    qd_1 = (
-    inv_root_1*(S_dot_x*axis_z_ups_axes2_in_base_x + S_dot_y*axis_z_ups_axes2_in_base_y +
-        S_dot_z*axis_z_ups_axes2_in_base_z)
-    )
-    # (ups-V11) angular velocity of link 1
-    omega_1_t = qd_1*s_2
-    omega_1_t_2 = c_2*qd_1
-    # (ups-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_x = omega_1_t_2*qd_2
-    zeta_2_y = omega_1_t*qd_2
-    # (ups-V13) centripetal tensor of link 2
-    W_2_t = omega_1_t*omega_1_t
-    W_2_t_2 = omega_1_t_2*omega_1_t_2
-    W_2_t_3 = qd_2*qd_2
-    W_2_xy = omega_1_t*omega_1_t_2
-    # (ups-A5) acceleration of the connection point at zero joint accelerations
-    bias_t = 2.0*S_dot_tip_x
-    bias_z = bias_t*omega_1_t_2 + 2.0*root_2*zeta_2_y
-    # (ups-A7) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-    rel_o_z = u_1_tip_z - bias_z
-    # (ups-A9) remainder without the acceleration in: acceleration of joint 1
-    qdd_1_o_t = inv_root_2*(u_1_t + u_1_t_2 + u_1_t_3 - bias_t*qd_2)
-    qdd_1_o = inv_root_1*rel_o_z
-    # (ups-A15) remainder without the acceleration in: angular acceleration of link 1
-    alpha_1_o_t = qdd_1_o*s_2
-    alpha_1_o_t_2 = c_2*qdd_1_o
-    # (ups-A18) remainder without the acceleration in: angular acceleration of link 2
-    alpha_2_o_x = alpha_1_o_t - zeta_2_x
-    alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y
-    # (ups-A20) remainder of the acceleration tensor of link 2
-    B_2_o_xy = -2.0*W_2_xy - qdd_1_o_t
-    B_2_o_zx = zeta_2_y - alpha_2_o_y
-    B_2_o_zy = alpha_2_o_x - zeta_2_x
-    # (ups-N14) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-    mu_2_o_x = (
-    B_2_o_zy*Sigma_2_yy + J_group_2_xz*qdd_1_o_t + J_group_2_yz*(W_2_t_2 - W_2_t_3) +
-        Sigma_2_zz*alpha_1_o_t + g_r1_x*h_2_z + g_r3_y*h_2_y - B_2_o_zx*J_group_2_xy -
-        acc_3_o_y*h_3_y - acc_3_o_z*h_3_z
-    )
-    mu_2_o_y = (
-    B_2_o_zy*J_group_2_xy + acc_3_o_x*h_3_y + g_r1_x*h_2_x - B_2_o_xy*J_group_2_yz -
-        B_2_o_zx*Sigma_2_xx - J_group_2_xz*(W_2_t - W_2_t_3) - Sigma_2_zz*alpha_1_o_t_2 -
-        acc_3_o_z*h_3_x - g_r3_x*h_2_y
-    )
-    mu_2_o_z = (
-    J_group_2_xy*(W_2_t - W_2_t_2) + J_group_2_xz*alpha_1_o_t + Sigma_2_xx*qdd_1_o_t +
-        acc_3_o_x*h_3_z + acc_3_o_y*h_3_x - B_2_o_xy*Sigma_2_yy - J_group_2_yz*alpha_1_o_t_2 -
-        g_r3_x*h_2_z - g_r3_y*h_2_x
-    )
-    # (ups-N7) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
-    phi_3_o_x = -B_2_o_xy*h_3_z - alpha_1_o_t_2*h_3_y - h_3_x*(W_2_t_2 + W_2_t_3)
-    # (ups-N26) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    c_o_y = alpha_1_o_t*h_3_y - h_3_x*qdd_1_o_t - h_3_z*(W_2_t + W_2_t_3) - inv_root_2*mu_2_o_z
-    c_o_z = (
-    B_2_o_zy*h_3_z + h_3_y*(W_2_t + W_2_t_2) - B_2_o_zx*h_3_x - inv_root_1*(mu_2_o_x*s_2 -
-        c_2*mu_2_o_y)
-    )
-    # (ups-N28) velocity and gravity terms of the leg force
-    U_in_base_x = axis_x_x*phi_3_o_x - axis_y_ups_axes2_x*c_o_y - axis_z_ups_axes2_in_base_x*c_o_z
-    U_in_base_y = axis_x_y*phi_3_o_x - axis_y_ups_axes2_y*c_o_y - axis_z_ups_axes2_in_base_y*c_o_z
-    U_in_base_z = axis_x_z*phi_3_o_x - axis_y_ups_axes2_z*c_o_y - axis_z_ups_axes2_in_base_z*c_o_z
-    # (M7) rotational part of Z
-    Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z
-    Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
-    Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
-    # (M8) moment of the column's unit force about the platform origin
-    H_a_3_x = axis_x_z*q_in_base_y - axis_x_y*q_in_base_z
-    H_a_3_y = axis_x_x*q_in_base_z - axis_x_z*q_in_base_x
-    H_a_3_z = axis_x_y*q_in_base_x - axis_x_x*q_in_base_y
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) > _TOLERANCE * 0.8) & (abs(root_2) > _TOLERANCE * 0.8)
-    return (
-    ok, (Q_t_10, Q_t_11, Q_t_12, Q_t_14, Q_t_15, Q_t_17, M_ta_t_3, M_ta_t_4, M_ta_t_5, M_ta_t_6,
-        M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2, M_aa_t_3, M_aa_t_4,
-        M_aa_t_5, M_aa_t_6, U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,),
-        (axis_x_x, axis_x_y, axis_x_z, H_a_3_x, H_a_3_y, H_a_3_z,),
-    )
-
-
-def _dynamics_after(c, s, t, f):
-    m_star, = c
-    (
-    h_star_in_base_x, h_star_in_base_y, h_star_in_base_z, J_star_t_8, J_star_t_9, J_star_t_10,
-        J_star_t_12, J_star_t_13, J_star_t_15, Z_p_x, Z_p_y, Z_p_z, Z_q_in_base_x, Z_q_in_base_y,
-        Z_q_in_base_z,
-    ) = s
+    sums = [0.0] * 27
+    for leg, k in legs[0]:
+        (
+        J_group_2_xx, J_group_2_xy, J_group_2_xz, J_group_2_yy, J_group_2_yz, J_group_2_zz,
+            Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x,
+            h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, ups_base_frame_xx, ups_base_frame_xy,
+            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
+            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_platform_point_x, ups_platform_point_y,
+            ups_platform_point_z,
+        ) = k
+        # (ups-K1) from the base point to the connection point
+        q_in_base_x = (
+        R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
+        )
+        q_in_base_y = (
+        R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
+        )
+        q_in_base_z = (
+        R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
+        )
+        S_x = q_in_base_x + t_x - ups_base_point_x
+        S_y = q_in_base_y + t_y - ups_base_point_y
+        S_z = q_in_base_z + t_z - ups_base_point_z
+        # (ups-K2) component along the reference direction
+        px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx
+        # (ups-K3) component across the reference direction
+        py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy
+        # (ups-K4) squared amplitude
+        rho2_1 = px_1*px_1 + py_1*py_1
+        # (ups-K5) amplitude, with the sign of the branch
+        root_1 = branch_1*sqrt(rho2_1)
+        # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
+        xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz
+        # (ups-K13) squared amplitude
+        rho2_2 = rho2_1 + xi_1_t*xi_1_t
+        # (ups-K14) amplitude, with the sign of the branch
+        root_2 = branch_2*sqrt(rho2_2)
+        # (ups-K15) cosine of the angle of joint 2 from its reference direction
+        inv_root_2 = 1.0/root_2
+        c_2 = inv_root_2*root_1
+        # (ups-K16) sine of the angle of joint 2 from its reference direction
+        s_2 = inv_root_2*xi_1_t
+        # (ups-V5) reciprocal vector 1
+        axis_x_x = S_x*inv_root_2
+        axis_x_y = S_y*inv_root_2
+        axis_x_z = S_z*inv_root_2
+        # (ups-K6) cosine of the angle of joint 1 from its reference direction
+        inv_root_1 = 1.0/root_1
+        c_1 = inv_root_1*py_1
+        # (ups-K7) sine of the angle of joint 1 from its reference direction
+        s_1 = inv_root_1*px_1
+        # (ups-V5) reciprocal vector 1
+        axis_z_ups_axes2_in_base_x = s_1*ups_base_frame_xy - c_1*ups_base_frame_xx
+        axis_z_ups_axes2_in_base_y = s_1*ups_base_frame_yy - c_1*ups_base_frame_yx
+        axis_z_ups_axes2_in_base_z = s_1*ups_base_frame_zy - c_1*ups_base_frame_zx
+        axis_y_ups_axes2_x = (
+        axis_x_z*axis_z_ups_axes2_in_base_y - axis_x_y*axis_z_ups_axes2_in_base_z
+        )
+        axis_y_ups_axes2_y = (
+        axis_x_x*axis_z_ups_axes2_in_base_z - axis_x_z*axis_z_ups_axes2_in_base_x
+        )
+        axis_y_ups_axes2_z = (
+        axis_x_y*axis_z_ups_axes2_in_base_x - axis_x_x*axis_z_ups_axes2_in_base_y
+        )
+        # (ups-A14) coefficient of the acceleration in: angular acceleration of link 1
+        d_alpha_1_t = inv_root_1*s_2
+        # (ups-N22) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        d_G_t = h_3_z*inv_root_2
+        # (ups-N6) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+        d_phi_3_t = h_3_y*inv_root_2
+        d_phi_3_t_2 = h_3_x*inv_root_2
+        # (ups-N25) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        d_c_yy = -d_phi_3_t_2 - inv_root_2*(h_3_x + J_group_2_zz*inv_root_2)
+        d_c_yz = (
+        d_alpha_1_t*h_3_y - inv_root_2*(J_group_2_xz*d_alpha_1_t - J_group_2_yz*inv_root_2)
+        )
+        d_c_zz = (
+        d_alpha_1_t*h_3_z - d_phi_3_t_2 - inv_root_1*(s_2*(J_group_2_xx*d_alpha_1_t - h_3_z -
+            J_group_2_xy*inv_root_2) - c_2*(J_group_2_xy*d_alpha_1_t - h_3_x -
+            J_group_2_yy*inv_root_2))
+        )
+        # (ups-N27) inertia of the leg at the connection point, without the mass gathered there
+        Q_t = 0.5*d_c_yy
+        Q_t_2 = 0.5*d_c_zz
+        Q_t_3 = Q_t*axis_y_ups_axes2_x + axis_z_ups_axes2_in_base_x*d_c_yz - axis_x_x*d_G_t
+        Q_t_4 = Q_t*axis_y_ups_axes2_y + axis_z_ups_axes2_in_base_y*d_c_yz - axis_x_y*d_G_t
+        Q_t_5 = Q_t*axis_y_ups_axes2_z + axis_z_ups_axes2_in_base_z*d_c_yz - axis_x_z*d_G_t
+        Q_t_6 = Q_t_2*axis_z_ups_axes2_in_base_x + axis_x_x*d_phi_3_t
+        Q_t_7 = Q_t_2*axis_z_ups_axes2_in_base_y + axis_x_y*d_phi_3_t
+        Q_t_8 = Q_t_2*axis_z_ups_axes2_in_base_z + axis_x_z*d_phi_3_t
+        Q_t_9 = Q_t_3*axis_y_ups_axes2_x + Q_t_6*axis_z_ups_axes2_in_base_x
+        Q_t_10 = 2.0*Q_t_9
+        Q_t_11 = (
+        Q_t_3*axis_y_ups_axes2_y + Q_t_4*axis_y_ups_axes2_x + Q_t_6*axis_z_ups_axes2_in_base_y +
+            Q_t_7*axis_z_ups_axes2_in_base_x
+        )
+        Q_t_12 = (
+        Q_t_3*axis_y_ups_axes2_z + Q_t_5*axis_y_ups_axes2_x + Q_t_6*axis_z_ups_axes2_in_base_z +
+            Q_t_8*axis_z_ups_axes2_in_base_x
+        )
+        Q_t_13 = Q_t_4*axis_y_ups_axes2_y + Q_t_7*axis_z_ups_axes2_in_base_y
+        Q_t_14 = 2.0*Q_t_13
+        Q_t_15 = (
+        Q_t_4*axis_y_ups_axes2_z + Q_t_5*axis_y_ups_axes2_y + Q_t_7*axis_z_ups_axes2_in_base_z +
+            Q_t_8*axis_z_ups_axes2_in_base_y
+        )
+        Q_t_16 = Q_t_5*axis_y_ups_axes2_z + Q_t_8*axis_z_ups_axes2_in_base_z
+        Q_t_17 = 2.0*Q_t_16
+        # (M2) coupling block of M
+        M_ta_t = Q_t_11*q_in_base_z
+        M_ta_t_2 = Q_t_12*q_in_base_y
+        M_ta_t_3 = M_ta_t - M_ta_t_2
+        M_ta_t_4 = Q_t_10*q_in_base_z - Q_t_12*q_in_base_x
+        M_ta_t_5 = Q_t_10*q_in_base_y - Q_t_11*q_in_base_x
+        M_ta_t_6 = Q_t_14*q_in_base_z - Q_t_15*q_in_base_y
+        M_ta_t_7 = Q_t_15*q_in_base_x
+        M_ta_t_8 = M_ta_t - M_ta_t_7
+        M_ta_t_9 = Q_t_11*q_in_base_y - Q_t_14*q_in_base_x
+        M_ta_t_10 = Q_t_15*q_in_base_z - Q_t_17*q_in_base_y
+        M_ta_t_11 = Q_t_12*q_in_base_z - Q_t_17*q_in_base_x
+        M_ta_t_12 = M_ta_t_7 - M_ta_t_2
+        # (M3) rotational block of M
+        M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y
+        M_aa_t_2 = M_ta_t_8*q_in_base_z - M_ta_t_11*q_in_base_y
+        M_aa_t_3 = M_ta_t_12*q_in_base_y + M_ta_t_9*q_in_base_z
+        M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x
+        M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z
+        M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x
+        # (ups-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
+        g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
+        g_r3_x = g_r0_z*s_2 - c_2*g_r1_y
+        g_r3_y = -c_2*g_r0_z - g_r1_y*s_2
+        # (ups-A1) centripetal acceleration of the connection point
+        u_1_x = W_p_xy*q_in_base_y + W_p_xz*q_in_base_z - W_p_xx*q_in_base_x
+        u_1_y = W_p_xy*q_in_base_x + W_p_yz*q_in_base_z - W_p_yy*q_in_base_y
+        u_1_z = W_p_xz*q_in_base_x + W_p_yz*q_in_base_y - W_p_zz*q_in_base_z
+        u_1_t = axis_y_ups_axes2_x*u_1_x
+        u_1_t_2 = axis_y_ups_axes2_y*u_1_y
+        u_1_t_3 = axis_y_ups_axes2_z*u_1_z
+        u_1_tip_z = (
+        axis_z_ups_axes2_in_base_x*u_1_x + axis_z_ups_axes2_in_base_y*u_1_y +
+            axis_z_ups_axes2_in_base_z*u_1_z
+        )
+        # (ups-N4) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        acc_3_o_x = axis_x_x*u_1_x + axis_x_y*u_1_y + axis_x_z*u_1_z - g_r3_x
+        acc_3_o_y = u_1_t + u_1_t_2 + u_1_t_3 - g_r3_y
+        acc_3_o_z = u_1_tip_z - g_r1_x
+        # (ups-V1) velocity of the connection point
+        S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y
+        S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z
+        S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x
+        S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z
+        # (ups-V8) rate of joint 1
+        qd_2 = (
+        inv_root_2*(S_dot_x*axis_y_ups_axes2_x + S_dot_y*axis_y_ups_axes2_y +
+            S_dot_z*axis_y_ups_axes2_z)
+        )
+        qd_1 = (
+        inv_root_1*(S_dot_x*axis_z_ups_axes2_in_base_x + S_dot_y*axis_z_ups_axes2_in_base_y +
+            S_dot_z*axis_z_ups_axes2_in_base_z)
+        )
+        # (ups-V11) angular velocity of link 1
+        omega_1_t = qd_1*s_2
+        omega_1_t_2 = c_2*qd_1
+        # (ups-A4) angular acceleration of link 2 from the turning of axis 2
+        zeta_2_x = omega_1_t_2*qd_2
+        zeta_2_y = omega_1_t*qd_2
+        # (ups-V13) centripetal tensor of link 2
+        W_2_t = omega_1_t*omega_1_t
+        W_2_t_2 = omega_1_t_2*omega_1_t_2
+        W_2_t_3 = qd_2*qd_2
+        W_2_xy = omega_1_t*omega_1_t_2
+        # (ups-A5) acceleration of the connection point at zero joint accelerations
+        bias_t = 2.0*S_dot_tip_x
+        bias_z = bias_t*omega_1_t_2 + 2.0*root_2*zeta_2_y
+        # (ups-A7) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        rel_o_z = u_1_tip_z - bias_z
+        # (ups-A9) remainder without the acceleration in: acceleration of joint 1
+        qdd_1_o_t = inv_root_2*(u_1_t + u_1_t_2 + u_1_t_3 - bias_t*qd_2)
+        qdd_1_o = inv_root_1*rel_o_z
+        # (ups-A15) remainder without the acceleration in: angular acceleration of link 1
+        alpha_1_o_t = qdd_1_o*s_2
+        alpha_1_o_t_2 = c_2*qdd_1_o
+        # (ups-A18) remainder without the acceleration in: angular acceleration of link 2
+        alpha_2_o_x = alpha_1_o_t - zeta_2_x
+        alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y
+        # (ups-A20) remainder of the acceleration tensor of link 2
+        B_2_o_xy = -2.0*W_2_xy - qdd_1_o_t
+        B_2_o_zx = zeta_2_y - alpha_2_o_y
+        B_2_o_zy = alpha_2_o_x - zeta_2_x
+        # (ups-N14) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        mu_2_o_x = (
+        B_2_o_zy*Sigma_2_yy + J_group_2_xz*qdd_1_o_t + J_group_2_yz*(W_2_t_2 - W_2_t_3) +
+            Sigma_2_zz*alpha_1_o_t + g_r1_x*h_2_z + g_r3_y*h_2_y - B_2_o_zx*J_group_2_xy -
+            acc_3_o_y*h_3_y - acc_3_o_z*h_3_z
+        )
+        mu_2_o_y = (
+        B_2_o_zy*J_group_2_xy + acc_3_o_x*h_3_y + g_r1_x*h_2_x - B_2_o_xy*J_group_2_yz -
+            B_2_o_zx*Sigma_2_xx - J_group_2_xz*(W_2_t - W_2_t_3) - Sigma_2_zz*alpha_1_o_t_2 -
+            acc_3_o_z*h_3_x - g_r3_x*h_2_y
+        )
+        mu_2_o_z = (
+        J_group_2_xy*(W_2_t - W_2_t_2) + J_group_2_xz*alpha_1_o_t + Sigma_2_xx*qdd_1_o_t +
+            acc_3_o_x*h_3_z + acc_3_o_y*h_3_x - B_2_o_xy*Sigma_2_yy - J_group_2_yz*alpha_1_o_t_2 -
+            g_r3_x*h_2_z - g_r3_y*h_2_x
+        )
+        # (ups-N7) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
+        phi_3_o_x = -B_2_o_xy*h_3_z - alpha_1_o_t_2*h_3_y - h_3_x*(W_2_t_2 + W_2_t_3)
+        # (ups-N26) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        c_o_y = (
+        alpha_1_o_t*h_3_y - h_3_x*qdd_1_o_t - h_3_z*(W_2_t + W_2_t_3) - inv_root_2*mu_2_o_z
+        )
+        c_o_z = (
+        B_2_o_zy*h_3_z + h_3_y*(W_2_t + W_2_t_2) - B_2_o_zx*h_3_x - inv_root_1*(mu_2_o_x*s_2 -
+            c_2*mu_2_o_y)
+        )
+        # (ups-N28) velocity and gravity terms of the leg force
+        U_in_base_x = (
+        axis_x_x*phi_3_o_x - axis_y_ups_axes2_x*c_o_y - axis_z_ups_axes2_in_base_x*c_o_z
+        )
+        U_in_base_y = (
+        axis_x_y*phi_3_o_x - axis_y_ups_axes2_y*c_o_y - axis_z_ups_axes2_in_base_y*c_o_z
+        )
+        U_in_base_z = (
+        axis_x_z*phi_3_o_x - axis_y_ups_axes2_z*c_o_y - axis_z_ups_axes2_in_base_z*c_o_z
+        )
+        # (M7) rotational part of Z
+        Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z
+        Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
+        Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
+        # (M8) moment of the column's unit force about the platform origin
+        H_a_3_x = axis_x_z*q_in_base_y - axis_x_y*q_in_base_z
+        H_a_3_y = axis_x_x*q_in_base_z - axis_x_z*q_in_base_x
+        H_a_3_z = axis_x_y*q_in_base_x - axis_x_x*q_in_base_y
+        ok = (
+        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) > _TOLERANCE * 0.8) &
+            (abs(root_2) > _TOLERANCE * 0.8))
+        )
+        sums = m.added(sums, leg, (
+        Q_t_10, Q_t_11, Q_t_12, Q_t_14, Q_t_15, Q_t_17, M_ta_t_3, M_ta_t_4, M_ta_t_5,
+            M_ta_t_6, M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2,
+            M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6, U_in_base_x, U_in_base_y, U_in_base_z,
+            Z_a_t, Z_a_t_2, Z_a_t_3,
+        ))
+        out_H[[0, 1, 2, 3, 4, 5][leg]] = axis_x_x
+        out_H[[6, 7, 8, 9, 10, 11][leg]] = axis_x_y
+        out_H[[12, 13, 14, 15, 16, 17][leg]] = axis_x_z
+        out_H[[18, 19, 20, 21, 22, 23][leg]] = H_a_3_x
+        out_H[[24, 25, 26, 27, 28, 29][leg]] = H_a_3_y
+        out_H[[30, 31, 32, 33, 34, 35][leg]] = H_a_3_z
     (
     total_ups_xx, total_ups_xy, total_ups_xz, total_ups_yy, total_ups_yz, total_ups_zz,
         total_ups_xx_2, total_ups_xy_2, total_ups_xz_2, total_ups_yx, total_ups_yy_2,
         total_ups_yz_2, total_ups_zx, total_ups_zy, total_ups_zz_2, total_ups_xx_3,
         total_ups_xy_3, total_ups_xz_3, total_ups_yy_3, total_ups_yz_3, total_ups_zz_3,
         total_ups_x, total_ups_y, total_ups_z, total_ups_x_2, total_ups_y_2, total_ups_z_2,
-    ) = t
+    ) = sums
     # (M1) translational block of M
     M_tt_xx = m_star - total_ups_xx
     M_tt_yy = m_star - total_ups_yy
@@ -1200,23 +1586,59 @@ def _dynamics_after(c, s, t, f):
     Z_a_x = Z_q_in_base_x + total_ups_x_2
     Z_a_y = Z_q_in_base_y + total_ups_y_2
     Z_a_z = Z_q_in_base_z + total_ups_z_2
-    ok = True
-    return (
-    ok, (M_tt_xx, -total_ups_xy, -total_ups_xy, -total_ups_xz, -total_ups_xz, M_tt_yy,
-        -total_ups_yz, -total_ups_yz, M_tt_zz, total_ups_xx_2, total_ups_xx_2, M_ta_xy, M_ta_xy,
-        M_ta_xz, M_ta_xz, M_ta_yx, M_ta_yx, -total_ups_yy_2, -total_ups_yy_2, M_ta_yz, M_ta_yz,
-        M_ta_zx, M_ta_zx, M_ta_zy, M_ta_zy, -total_ups_zz_2, -total_ups_zz_2, M_aa_xx, M_aa_xy,
-        M_aa_xy, M_aa_xz, M_aa_xz, M_aa_yy, M_aa_yz, M_aa_yz, M_aa_zz, Z_t_x, Z_t_y, Z_t_z, Z_a_x,
-        Z_a_y, Z_a_z,),
-    )
+    out_M[0] = M_tt_xx
+    out_M[1] = -total_ups_xy
+    out_M[6] = -total_ups_xy
+    out_M[2] = -total_ups_xz
+    out_M[12] = -total_ups_xz
+    out_M[7] = M_tt_yy
+    out_M[8] = -total_ups_yz
+    out_M[13] = -total_ups_yz
+    out_M[14] = M_tt_zz
+    out_M[3] = total_ups_xx_2
+    out_M[18] = total_ups_xx_2
+    out_M[4] = M_ta_xy
+    out_M[24] = M_ta_xy
+    out_M[5] = M_ta_xz
+    out_M[30] = M_ta_xz
+    out_M[9] = M_ta_yx
+    out_M[19] = M_ta_yx
+    out_M[10] = -total_ups_yy_2
+    out_M[25] = -total_ups_yy_2
+    out_M[11] = M_ta_yz
+    out_M[31] = M_ta_yz
+    out_M[15] = M_ta_zx
+    out_M[20] = M_ta_zx
+    out_M[16] = M_ta_zy
+    out_M[26] = M_ta_zy
+    out_M[17] = -total_ups_zz_2
+    out_M[32] = -total_ups_zz_2
+    out_M[21] = M_aa_xx
+    out_M[22] = M_aa_xy
+    out_M[27] = M_aa_xy
+    out_M[23] = M_aa_xz
+    out_M[33] = M_aa_xz
+    out_M[28] = M_aa_yy
+    out_M[29] = M_aa_yz
+    out_M[34] = M_aa_yz
+    out_M[35] = M_aa_zz
+    out_Z[0] = Z_t_x
+    out_Z[1] = Z_t_y
+    out_Z[2] = Z_t_z
+    out_Z[3] = Z_a_x
+    out_Z[4] = Z_a_y
+    out_Z[5] = Z_a_z
+    return ok, (out_M, out_Z, out_H,)
 
 
 # M: 795 mul, 609 add, 12 div, 12 sqrt, 0 trig
-def _M_before(c, X, f):
+def _run_M(m, X):
+    sqrt = m.sqrt
+    shared, legs = m.constants("M")
     (
     J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
-        h_star_z,
-    ) = c
+        h_star_z, m_star,
+    ) = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -1251,6 +1673,9 @@ def _M_before(c, X, f):
     R_zx = quaternion_xz - quaternion_wy
     R_zy = quaternion_wx + quaternion_yz
     R_zz = 1.0 - quaternion_xx - quaternion_yy
+    ok = True
+    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    out_M = m.zeros(36)
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -1271,153 +1696,149 @@ def _M_before(c, X, f):
     J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
     J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz
     J_star_t_15 = 2.0*J_star_t_14 + J_star_xx
-    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    return (
-    ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, h_star_in_base_x,
-        h_star_in_base_y, h_star_in_base_z, J_star_t_8, J_star_t_9, J_star_t_10, J_star_t_12,
-        J_star_t_13, J_star_t_15,), (),
-    )
-
-
-def _M_ups(c, k, x, s, f):
-    sqrt = f.sqrt
-    (
-    J_group_2_xx, J_group_2_xy, J_group_2_xz, J_group_2_yy, J_group_2_yz, J_group_2_zz, branch_1,
-        branch_2, h_3_x, h_3_y, h_3_z, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-        ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-        ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-        ups_base_point_z, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
-    ) = k
-    t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
-    # (ups-K1) from the base point to the connection point
-    q_in_base_x = (
-    R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
-    )
-    q_in_base_y = (
-    R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
-    )
-    q_in_base_z = (
-    R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
-    )
-    S_x = q_in_base_x + t_x - ups_base_point_x
-    S_y = q_in_base_y + t_y - ups_base_point_y
-    S_z = q_in_base_z + t_z - ups_base_point_z
-    # (ups-K2) component along the reference direction
-    px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx
-    # (ups-K3) component across the reference direction
-    py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy
-    # (ups-K4) squared amplitude
-    rho2_1 = px_1*px_1 + py_1*py_1
-    # (ups-K5) amplitude, with the sign of the branch
-    root_1 = branch_1*sqrt(rho2_1)
-    # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
-    xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz
-    # (ups-K13) squared amplitude
-    rho2_2 = rho2_1 + xi_1_t*xi_1_t
-    # (ups-K14) amplitude, with the sign of the branch
-    root_2 = branch_2*sqrt(rho2_2)
-    # (ups-K15) cosine of the angle of joint 2 from its reference direction
-    inv_root_2 = 1.0/root_2
-    # (ups-K16) sine of the angle of joint 2 from its reference direction
-    s_2 = inv_root_2*xi_1_t
-    # (ups-V5) reciprocal vector 1
-    axis_x_x = S_x*inv_root_2
-    axis_x_y = S_y*inv_root_2
-    axis_x_z = S_z*inv_root_2
-    # (ups-K6) cosine of the angle of joint 1 from its reference direction
-    inv_root_1 = 1.0/root_1
-    c_1 = inv_root_1*py_1
-    # (ups-K7) sine of the angle of joint 1 from its reference direction
-    s_1 = inv_root_1*px_1
-    # (ups-V5) reciprocal vector 1
-    axis_z_ups_axes2_in_base_x = s_1*ups_base_frame_xy - c_1*ups_base_frame_xx
-    axis_z_ups_axes2_in_base_y = s_1*ups_base_frame_yy - c_1*ups_base_frame_yx
-    axis_z_ups_axes2_in_base_z = s_1*ups_base_frame_zy - c_1*ups_base_frame_zx
-    axis_y_ups_axes2_x = axis_x_z*axis_z_ups_axes2_in_base_y - axis_x_y*axis_z_ups_axes2_in_base_z
-    axis_y_ups_axes2_y = axis_x_x*axis_z_ups_axes2_in_base_z - axis_x_z*axis_z_ups_axes2_in_base_x
-    axis_y_ups_axes2_z = axis_x_y*axis_z_ups_axes2_in_base_x - axis_x_x*axis_z_ups_axes2_in_base_y
-    # (ups-A14) coefficient of the acceleration in: angular acceleration of link 1
-    d_alpha_1_t = inv_root_1*s_2
-    # (ups-N22) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-    d_G_t = h_3_z*inv_root_2
-    # (ups-N6) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-    d_phi_3_t = h_3_y*inv_root_2
-    d_phi_3_t_2 = h_3_x*inv_root_2
-    # (ups-N25) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_yy = -d_phi_3_t_2 - inv_root_2*(h_3_x + J_group_2_zz*inv_root_2)
-    d_c_yz = d_alpha_1_t*h_3_y - inv_root_2*(J_group_2_xz*d_alpha_1_t - J_group_2_yz*inv_root_2)
-    d_c_zz = (
-    d_alpha_1_t*h_3_z - d_phi_3_t_2 - inv_root_1*(s_2*(J_group_2_xx*d_alpha_1_t - h_3_z -
-        J_group_2_xy*inv_root_2) - inv_root_2*root_1*(J_group_2_xy*d_alpha_1_t - h_3_x -
-        J_group_2_yy*inv_root_2))
-    )
-    # (ups-N27) inertia of the leg at the connection point, without the mass gathered there
-    Q_t = 0.5*d_c_yy
-    Q_t_2 = 0.5*d_c_zz
-    Q_t_3 = Q_t*axis_y_ups_axes2_x + axis_z_ups_axes2_in_base_x*d_c_yz - axis_x_x*d_G_t
-    Q_t_4 = Q_t*axis_y_ups_axes2_y + axis_z_ups_axes2_in_base_y*d_c_yz - axis_x_y*d_G_t
-    Q_t_5 = Q_t*axis_y_ups_axes2_z + axis_z_ups_axes2_in_base_z*d_c_yz - axis_x_z*d_G_t
-    Q_t_6 = Q_t_2*axis_z_ups_axes2_in_base_x + axis_x_x*d_phi_3_t
-    Q_t_7 = Q_t_2*axis_z_ups_axes2_in_base_y + axis_x_y*d_phi_3_t
-    Q_t_8 = Q_t_2*axis_z_ups_axes2_in_base_z + axis_x_z*d_phi_3_t
-    Q_t_9 = Q_t_3*axis_y_ups_axes2_x + Q_t_6*axis_z_ups_axes2_in_base_x
-    Q_t_10 = 2.0*Q_t_9
-    Q_t_11 = (
-    Q_t_3*axis_y_ups_axes2_y + Q_t_4*axis_y_ups_axes2_x + Q_t_6*axis_z_ups_axes2_in_base_y +
-        Q_t_7*axis_z_ups_axes2_in_base_x
-    )
-    Q_t_12 = (
-    Q_t_3*axis_y_ups_axes2_z + Q_t_5*axis_y_ups_axes2_x + Q_t_6*axis_z_ups_axes2_in_base_z +
-        Q_t_8*axis_z_ups_axes2_in_base_x
-    )
-    Q_t_13 = Q_t_4*axis_y_ups_axes2_y + Q_t_7*axis_z_ups_axes2_in_base_y
-    Q_t_14 = 2.0*Q_t_13
-    Q_t_15 = (
-    Q_t_4*axis_y_ups_axes2_z + Q_t_5*axis_y_ups_axes2_y + Q_t_7*axis_z_ups_axes2_in_base_z +
-        Q_t_8*axis_z_ups_axes2_in_base_y
-    )
-    Q_t_16 = Q_t_5*axis_y_ups_axes2_z + Q_t_8*axis_z_ups_axes2_in_base_z
-    Q_t_17 = 2.0*Q_t_16
-    # (M2) coupling block of M
-    M_ta_t = Q_t_11*q_in_base_z
-    M_ta_t_2 = Q_t_12*q_in_base_y
-    M_ta_t_3 = M_ta_t - M_ta_t_2
-    M_ta_t_4 = Q_t_10*q_in_base_z - Q_t_12*q_in_base_x
-    M_ta_t_5 = Q_t_10*q_in_base_y - Q_t_11*q_in_base_x
-    M_ta_t_6 = Q_t_14*q_in_base_z - Q_t_15*q_in_base_y
-    M_ta_t_7 = Q_t_15*q_in_base_x
-    M_ta_t_8 = M_ta_t - M_ta_t_7
-    M_ta_t_9 = Q_t_11*q_in_base_y - Q_t_14*q_in_base_x
-    M_ta_t_10 = Q_t_15*q_in_base_z - Q_t_17*q_in_base_y
-    M_ta_t_11 = Q_t_12*q_in_base_z - Q_t_17*q_in_base_x
-    M_ta_t_12 = M_ta_t_7 - M_ta_t_2
-    # (M3) rotational block of M
-    M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y
-    M_aa_t_2 = M_ta_t_8*q_in_base_z - M_ta_t_11*q_in_base_y
-    M_aa_t_3 = M_ta_t_12*q_in_base_y + M_ta_t_9*q_in_base_z
-    M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x
-    M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z
-    M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) > _TOLERANCE * 0.8) & (abs(root_2) > _TOLERANCE * 0.8)
-    return (
-    ok, (Q_t_10, Q_t_11, Q_t_12, Q_t_14, Q_t_15, Q_t_17, M_ta_t_3, M_ta_t_4, M_ta_t_5, M_ta_t_6,
-        M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2, M_aa_t_3, M_aa_t_4,
-        M_aa_t_5, M_aa_t_6,), (),
-    )
-
-
-def _M_after(c, s, t, f):
-    m_star, = c
-    (
-    h_star_in_base_x, h_star_in_base_y, h_star_in_base_z, J_star_t_8, J_star_t_9, J_star_t_10,
-        J_star_t_12, J_star_t_13, J_star_t_15,
-    ) = s
+    sums = [0.0] * 21
+    for leg, k in legs[0]:
+        (
+        J_group_2_xx, J_group_2_xy, J_group_2_xz, J_group_2_yy, J_group_2_yz, J_group_2_zz,
+            branch_1, branch_2, h_3_x, h_3_y, h_3_z, ups_base_frame_xx, ups_base_frame_xy,
+            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
+            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_platform_point_x, ups_platform_point_y,
+            ups_platform_point_z,
+        ) = k
+        # (ups-K1) from the base point to the connection point
+        q_in_base_x = (
+        R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
+        )
+        q_in_base_y = (
+        R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
+        )
+        q_in_base_z = (
+        R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
+        )
+        S_x = q_in_base_x + t_x - ups_base_point_x
+        S_y = q_in_base_y + t_y - ups_base_point_y
+        S_z = q_in_base_z + t_z - ups_base_point_z
+        # (ups-K2) component along the reference direction
+        px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx
+        # (ups-K3) component across the reference direction
+        py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy
+        # (ups-K4) squared amplitude
+        rho2_1 = px_1*px_1 + py_1*py_1
+        # (ups-K5) amplitude, with the sign of the branch
+        root_1 = branch_1*sqrt(rho2_1)
+        # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
+        xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz
+        # (ups-K13) squared amplitude
+        rho2_2 = rho2_1 + xi_1_t*xi_1_t
+        # (ups-K14) amplitude, with the sign of the branch
+        root_2 = branch_2*sqrt(rho2_2)
+        # (ups-K15) cosine of the angle of joint 2 from its reference direction
+        inv_root_2 = 1.0/root_2
+        # (ups-K16) sine of the angle of joint 2 from its reference direction
+        s_2 = inv_root_2*xi_1_t
+        # (ups-V5) reciprocal vector 1
+        axis_x_x = S_x*inv_root_2
+        axis_x_y = S_y*inv_root_2
+        axis_x_z = S_z*inv_root_2
+        # (ups-K6) cosine of the angle of joint 1 from its reference direction
+        inv_root_1 = 1.0/root_1
+        c_1 = inv_root_1*py_1
+        # (ups-K7) sine of the angle of joint 1 from its reference direction
+        s_1 = inv_root_1*px_1
+        # (ups-V5) reciprocal vector 1
+        axis_z_ups_axes2_in_base_x = s_1*ups_base_frame_xy - c_1*ups_base_frame_xx
+        axis_z_ups_axes2_in_base_y = s_1*ups_base_frame_yy - c_1*ups_base_frame_yx
+        axis_z_ups_axes2_in_base_z = s_1*ups_base_frame_zy - c_1*ups_base_frame_zx
+        axis_y_ups_axes2_x = (
+        axis_x_z*axis_z_ups_axes2_in_base_y - axis_x_y*axis_z_ups_axes2_in_base_z
+        )
+        axis_y_ups_axes2_y = (
+        axis_x_x*axis_z_ups_axes2_in_base_z - axis_x_z*axis_z_ups_axes2_in_base_x
+        )
+        axis_y_ups_axes2_z = (
+        axis_x_y*axis_z_ups_axes2_in_base_x - axis_x_x*axis_z_ups_axes2_in_base_y
+        )
+        # (ups-A14) coefficient of the acceleration in: angular acceleration of link 1
+        d_alpha_1_t = inv_root_1*s_2
+        # (ups-N22) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        d_G_t = h_3_z*inv_root_2
+        # (ups-N6) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+        d_phi_3_t = h_3_y*inv_root_2
+        d_phi_3_t_2 = h_3_x*inv_root_2
+        # (ups-N25) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        d_c_yy = -d_phi_3_t_2 - inv_root_2*(h_3_x + J_group_2_zz*inv_root_2)
+        d_c_yz = (
+        d_alpha_1_t*h_3_y - inv_root_2*(J_group_2_xz*d_alpha_1_t - J_group_2_yz*inv_root_2)
+        )
+        d_c_zz = (
+        d_alpha_1_t*h_3_z - d_phi_3_t_2 - inv_root_1*(s_2*(J_group_2_xx*d_alpha_1_t - h_3_z -
+            J_group_2_xy*inv_root_2) - inv_root_2*root_1*(J_group_2_xy*d_alpha_1_t - h_3_x -
+            J_group_2_yy*inv_root_2))
+        )
+        # (ups-N27) inertia of the leg at the connection point, without the mass gathered there
+        Q_t = 0.5*d_c_yy
+        Q_t_2 = 0.5*d_c_zz
+        Q_t_3 = Q_t*axis_y_ups_axes2_x + axis_z_ups_axes2_in_base_x*d_c_yz - axis_x_x*d_G_t
+        Q_t_4 = Q_t*axis_y_ups_axes2_y + axis_z_ups_axes2_in_base_y*d_c_yz - axis_x_y*d_G_t
+        Q_t_5 = Q_t*axis_y_ups_axes2_z + axis_z_ups_axes2_in_base_z*d_c_yz - axis_x_z*d_G_t
+        Q_t_6 = Q_t_2*axis_z_ups_axes2_in_base_x + axis_x_x*d_phi_3_t
+        Q_t_7 = Q_t_2*axis_z_ups_axes2_in_base_y + axis_x_y*d_phi_3_t
+        Q_t_8 = Q_t_2*axis_z_ups_axes2_in_base_z + axis_x_z*d_phi_3_t
+        Q_t_9 = Q_t_3*axis_y_ups_axes2_x + Q_t_6*axis_z_ups_axes2_in_base_x
+        Q_t_10 = 2.0*Q_t_9
+        Q_t_11 = (
+        Q_t_3*axis_y_ups_axes2_y + Q_t_4*axis_y_ups_axes2_x + Q_t_6*axis_z_ups_axes2_in_base_y +
+            Q_t_7*axis_z_ups_axes2_in_base_x
+        )
+        Q_t_12 = (
+        Q_t_3*axis_y_ups_axes2_z + Q_t_5*axis_y_ups_axes2_x + Q_t_6*axis_z_ups_axes2_in_base_z +
+            Q_t_8*axis_z_ups_axes2_in_base_x
+        )
+        Q_t_13 = Q_t_4*axis_y_ups_axes2_y + Q_t_7*axis_z_ups_axes2_in_base_y
+        Q_t_14 = 2.0*Q_t_13
+        Q_t_15 = (
+        Q_t_4*axis_y_ups_axes2_z + Q_t_5*axis_y_ups_axes2_y + Q_t_7*axis_z_ups_axes2_in_base_z +
+            Q_t_8*axis_z_ups_axes2_in_base_y
+        )
+        Q_t_16 = Q_t_5*axis_y_ups_axes2_z + Q_t_8*axis_z_ups_axes2_in_base_z
+        Q_t_17 = 2.0*Q_t_16
+        # (M2) coupling block of M
+        M_ta_t = Q_t_11*q_in_base_z
+        M_ta_t_2 = Q_t_12*q_in_base_y
+        M_ta_t_3 = M_ta_t - M_ta_t_2
+        M_ta_t_4 = Q_t_10*q_in_base_z - Q_t_12*q_in_base_x
+        M_ta_t_5 = Q_t_10*q_in_base_y - Q_t_11*q_in_base_x
+        M_ta_t_6 = Q_t_14*q_in_base_z - Q_t_15*q_in_base_y
+        M_ta_t_7 = Q_t_15*q_in_base_x
+        M_ta_t_8 = M_ta_t - M_ta_t_7
+        M_ta_t_9 = Q_t_11*q_in_base_y - Q_t_14*q_in_base_x
+        M_ta_t_10 = Q_t_15*q_in_base_z - Q_t_17*q_in_base_y
+        M_ta_t_11 = Q_t_12*q_in_base_z - Q_t_17*q_in_base_x
+        M_ta_t_12 = M_ta_t_7 - M_ta_t_2
+        # (M3) rotational block of M
+        M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y
+        M_aa_t_2 = M_ta_t_8*q_in_base_z - M_ta_t_11*q_in_base_y
+        M_aa_t_3 = M_ta_t_12*q_in_base_y + M_ta_t_9*q_in_base_z
+        M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x
+        M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z
+        M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x
+        ok = (
+        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) > _TOLERANCE * 0.8) &
+            (abs(root_2) > _TOLERANCE * 0.8))
+        )
+        sums = m.added(sums, leg, (
+        Q_t_10, Q_t_11, Q_t_12, Q_t_14, Q_t_15, Q_t_17, M_ta_t_3, M_ta_t_4, M_ta_t_5,
+            M_ta_t_6, M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2,
+            M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6,
+        ))
     (
     total_ups_xx, total_ups_xy, total_ups_xz, total_ups_yy, total_ups_yz, total_ups_zz,
         total_ups_xx_2, total_ups_xy_2, total_ups_xz_2, total_ups_yx, total_ups_yy_2,
         total_ups_yz_2, total_ups_zx, total_ups_zy, total_ups_zz_2, total_ups_xx_3,
         total_ups_xy_3, total_ups_xz_3, total_ups_yy_3, total_ups_yz_3, total_ups_zz_3,
-    ) = t
+    ) = sums
     # (M1) translational block of M
     M_tt_xx = m_star - total_ups_xx
     M_tt_yy = m_star - total_ups_yy
@@ -1436,22 +1857,53 @@ def _M_after(c, s, t, f):
     M_aa_yy = J_star_t_12 - total_ups_yy_3
     M_aa_yz = J_star_t_13 + total_ups_yz_3
     M_aa_zz = J_star_t_15 - total_ups_zz_3
-    ok = True
-    return (
-    ok, (M_tt_xx, -total_ups_xy, -total_ups_xy, -total_ups_xz, -total_ups_xz, M_tt_yy,
-        -total_ups_yz, -total_ups_yz, M_tt_zz, total_ups_xx_2, total_ups_xx_2, M_ta_xy, M_ta_xy,
-        M_ta_xz, M_ta_xz, M_ta_yx, M_ta_yx, -total_ups_yy_2, -total_ups_yy_2, M_ta_yz, M_ta_yz,
-        M_ta_zx, M_ta_zx, M_ta_zy, M_ta_zy, -total_ups_zz_2, -total_ups_zz_2, M_aa_xx, M_aa_xy,
-        M_aa_xy, M_aa_xz, M_aa_xz, M_aa_yy, M_aa_yz, M_aa_yz, M_aa_zz,),
-    )
+    out_M[0] = M_tt_xx
+    out_M[1] = -total_ups_xy
+    out_M[6] = -total_ups_xy
+    out_M[2] = -total_ups_xz
+    out_M[12] = -total_ups_xz
+    out_M[7] = M_tt_yy
+    out_M[8] = -total_ups_yz
+    out_M[13] = -total_ups_yz
+    out_M[14] = M_tt_zz
+    out_M[3] = total_ups_xx_2
+    out_M[18] = total_ups_xx_2
+    out_M[4] = M_ta_xy
+    out_M[24] = M_ta_xy
+    out_M[5] = M_ta_xz
+    out_M[30] = M_ta_xz
+    out_M[9] = M_ta_yx
+    out_M[19] = M_ta_yx
+    out_M[10] = -total_ups_yy_2
+    out_M[25] = -total_ups_yy_2
+    out_M[11] = M_ta_yz
+    out_M[31] = M_ta_yz
+    out_M[15] = M_ta_zx
+    out_M[20] = M_ta_zx
+    out_M[16] = M_ta_zy
+    out_M[26] = M_ta_zy
+    out_M[17] = -total_ups_zz_2
+    out_M[32] = -total_ups_zz_2
+    out_M[21] = M_aa_xx
+    out_M[22] = M_aa_xy
+    out_M[27] = M_aa_xy
+    out_M[23] = M_aa_xz
+    out_M[33] = M_aa_xz
+    out_M[28] = M_aa_yy
+    out_M[29] = M_aa_yz
+    out_M[34] = M_aa_yz
+    out_M[35] = M_aa_zz
+    return ok, (out_M,)
 
 
 # Z: 1020 mul, 783 add, 12 div, 12 sqrt, 0 trig
-def _Z_before(c, X, V, f):
+def _run_Z(m, X, V):
+    sqrt = m.sqrt
+    shared, legs = m.constants("Z")
     (
     J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3,
         gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
-    ) = c
+    ) = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -1499,6 +1951,9 @@ def _Z_before(c, X, V, f):
     omega_x = V_3
     omega_y = V_4
     omega_z = V_5
+    ok = True
+    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    out_Z = m.zeros(6)
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -1533,178 +1988,182 @@ def _Z_before(c, X, V, f):
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
-    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    return (
-    ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
-        t_dot_z, omega_x, omega_y, omega_z, W_p_xx, W_p_xy, W_p_xz, W_p_yy, W_p_yz, W_p_zz, Z_p_x,
-        Z_p_y, Z_p_z, Z_q_in_base_x, Z_q_in_base_y, Z_q_in_base_z,), (),
-    )
-
-
-def _Z_ups(c, k, x, s, f):
-    sqrt = f.sqrt
-    (
-    J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
-        branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
-        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-        ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-        ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
-        ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
-    ) = k
-    (
-    t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
-        t_dot_z, omega_x, omega_y, omega_z, W_p_xx, W_p_xy, W_p_xz, W_p_yy, W_p_yz, W_p_zz,
-    ) = s
-    # (ups-K1) from the base point to the connection point
-    q_in_base_x = (
-    R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
-    )
-    q_in_base_y = (
-    R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
-    )
-    q_in_base_z = (
-    R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
-    )
-    S_x = q_in_base_x + t_x - ups_base_point_x
-    S_y = q_in_base_y + t_y - ups_base_point_y
-    S_z = q_in_base_z + t_z - ups_base_point_z
-    # (ups-K2) component along the reference direction
-    px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx
-    # (ups-K3) component across the reference direction
-    py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy
-    # (ups-K4) squared amplitude
-    rho2_1 = px_1*px_1 + py_1*py_1
-    # (ups-K5) amplitude, with the sign of the branch
-    root_1 = branch_1*sqrt(rho2_1)
-    # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
-    xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz
-    # (ups-K13) squared amplitude
-    rho2_2 = rho2_1 + xi_1_t*xi_1_t
-    # (ups-K14) amplitude, with the sign of the branch
-    root_2 = branch_2*sqrt(rho2_2)
-    # (ups-K15) cosine of the angle of joint 2 from its reference direction
-    inv_root_2 = 1.0/root_2
-    c_2 = inv_root_2*root_1
-    # (ups-K16) sine of the angle of joint 2 from its reference direction
-    s_2 = inv_root_2*xi_1_t
-    # (ups-V5) reciprocal vector 1
-    axis_x_x = S_x*inv_root_2
-    axis_x_y = S_y*inv_root_2
-    axis_x_z = S_z*inv_root_2
-    # (ups-K6) cosine of the angle of joint 1 from its reference direction
-    inv_root_1 = 1.0/root_1
-    c_1 = inv_root_1*py_1
-    # (ups-K7) sine of the angle of joint 1 from its reference direction
-    s_1 = inv_root_1*px_1
-    # (ups-V5) reciprocal vector 1
-    axis_z_ups_axes2_in_base_x = s_1*ups_base_frame_xy - c_1*ups_base_frame_xx
-    axis_z_ups_axes2_in_base_y = s_1*ups_base_frame_yy - c_1*ups_base_frame_yx
-    axis_z_ups_axes2_in_base_z = s_1*ups_base_frame_zy - c_1*ups_base_frame_zx
-    axis_y_ups_axes2_x = axis_x_z*axis_z_ups_axes2_in_base_y - axis_x_y*axis_z_ups_axes2_in_base_z
-    axis_y_ups_axes2_y = axis_x_x*axis_z_ups_axes2_in_base_z - axis_x_z*axis_z_ups_axes2_in_base_x
-    axis_y_ups_axes2_z = axis_x_y*axis_z_ups_axes2_in_base_x - axis_x_x*axis_z_ups_axes2_in_base_y
-    # (ups-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-    g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
-    g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
-    g_r3_x = g_r0_z*s_2 - c_2*g_r1_y
-    g_r3_y = -c_2*g_r0_z - g_r1_y*s_2
-    # (ups-A1) centripetal acceleration of the connection point
-    u_1_x = W_p_xy*q_in_base_y + W_p_xz*q_in_base_z - W_p_xx*q_in_base_x
-    u_1_y = W_p_xy*q_in_base_x + W_p_yz*q_in_base_z - W_p_yy*q_in_base_y
-    u_1_z = W_p_xz*q_in_base_x + W_p_yz*q_in_base_y - W_p_zz*q_in_base_z
-    u_1_t = axis_y_ups_axes2_x*u_1_x
-    u_1_t_2 = axis_y_ups_axes2_y*u_1_y
-    u_1_t_3 = axis_y_ups_axes2_z*u_1_z
-    u_1_tip_z = (
-    axis_z_ups_axes2_in_base_x*u_1_x + axis_z_ups_axes2_in_base_y*u_1_y +
-        axis_z_ups_axes2_in_base_z*u_1_z
-    )
-    # (ups-N4) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-    acc_3_o_x = axis_x_x*u_1_x + axis_x_y*u_1_y + axis_x_z*u_1_z - g_r3_x
-    acc_3_o_y = u_1_t + u_1_t_2 + u_1_t_3 - g_r3_y
-    acc_3_o_z = u_1_tip_z - g_r1_x
-    # (ups-V1) velocity of the connection point
-    S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y
-    S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z
-    S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x
-    S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z
-    # (ups-V8) rate of joint 1
-    qd_2 = (
-    inv_root_2*(S_dot_x*axis_y_ups_axes2_x + S_dot_y*axis_y_ups_axes2_y +
-        S_dot_z*axis_y_ups_axes2_z)
-    )
-    qd_1 = (
-    inv_root_1*(S_dot_x*axis_z_ups_axes2_in_base_x + S_dot_y*axis_z_ups_axes2_in_base_y +
-        S_dot_z*axis_z_ups_axes2_in_base_z)
-    )
-    # (ups-V11) angular velocity of link 1
-    omega_1_t = qd_1*s_2
-    omega_1_t_2 = c_2*qd_1
-    # (ups-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_x = omega_1_t_2*qd_2
-    zeta_2_y = omega_1_t*qd_2
-    # (ups-V13) centripetal tensor of link 2
-    W_2_t = omega_1_t*omega_1_t
-    W_2_t_2 = omega_1_t_2*omega_1_t_2
-    W_2_t_3 = qd_2*qd_2
-    W_2_xy = omega_1_t*omega_1_t_2
-    # (ups-A5) acceleration of the connection point at zero joint accelerations
-    bias_t = 2.0*S_dot_tip_x
-    bias_z = bias_t*omega_1_t_2 + 2.0*root_2*zeta_2_y
-    # (ups-A7) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-    rel_o_z = u_1_tip_z - bias_z
-    # (ups-A9) remainder without the acceleration in: acceleration of joint 1
-    qdd_1_o_t = inv_root_2*(u_1_t + u_1_t_2 + u_1_t_3 - bias_t*qd_2)
-    qdd_1_o = inv_root_1*rel_o_z
-    # (ups-A15) remainder without the acceleration in: angular acceleration of link 1
-    alpha_1_o_t = qdd_1_o*s_2
-    alpha_1_o_t_2 = c_2*qdd_1_o
-    # (ups-A18) remainder without the acceleration in: angular acceleration of link 2
-    alpha_2_o_x = alpha_1_o_t - zeta_2_x
-    alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y
-    # (ups-A20) remainder of the acceleration tensor of link 2
-    B_2_o_xy = -2.0*W_2_xy - qdd_1_o_t
-    B_2_o_zx = zeta_2_y - alpha_2_o_y
-    B_2_o_zy = alpha_2_o_x - zeta_2_x
-    # (ups-N14) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-    mu_2_o_x = (
-    B_2_o_zy*Sigma_2_yy + J_group_2_xz*qdd_1_o_t + J_group_2_yz*(W_2_t_2 - W_2_t_3) +
-        Sigma_2_zz*alpha_1_o_t + g_r1_x*h_2_z + g_r3_y*h_2_y - B_2_o_zx*J_group_2_xy -
-        acc_3_o_y*h_3_y - acc_3_o_z*h_3_z
-    )
-    mu_2_o_y = (
-    B_2_o_zy*J_group_2_xy + acc_3_o_x*h_3_y + g_r1_x*h_2_x - B_2_o_xy*J_group_2_yz -
-        B_2_o_zx*Sigma_2_xx - J_group_2_xz*(W_2_t - W_2_t_3) - Sigma_2_zz*alpha_1_o_t_2 -
-        acc_3_o_z*h_3_x - g_r3_x*h_2_y
-    )
-    mu_2_o_z = (
-    J_group_2_xy*(W_2_t - W_2_t_2) + J_group_2_xz*alpha_1_o_t + Sigma_2_xx*qdd_1_o_t +
-        acc_3_o_x*h_3_z + acc_3_o_y*h_3_x - B_2_o_xy*Sigma_2_yy - J_group_2_yz*alpha_1_o_t_2 -
-        g_r3_x*h_2_z - g_r3_y*h_2_x
-    )
-    # (ups-N7) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
-    phi_3_o_x = -B_2_o_xy*h_3_z - alpha_1_o_t_2*h_3_y - h_3_x*(W_2_t_2 + W_2_t_3)
-    # (ups-N26) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    c_o_y = alpha_1_o_t*h_3_y - h_3_x*qdd_1_o_t - h_3_z*(W_2_t + W_2_t_3) - inv_root_2*mu_2_o_z
-    c_o_z = (
-    B_2_o_zy*h_3_z + h_3_y*(W_2_t + W_2_t_2) - B_2_o_zx*h_3_x - inv_root_1*(mu_2_o_x*s_2 -
-        c_2*mu_2_o_y)
-    )
-    # (ups-N28) velocity and gravity terms of the leg force
-    U_in_base_x = axis_x_x*phi_3_o_x - axis_y_ups_axes2_x*c_o_y - axis_z_ups_axes2_in_base_x*c_o_z
-    U_in_base_y = axis_x_y*phi_3_o_x - axis_y_ups_axes2_y*c_o_y - axis_z_ups_axes2_in_base_y*c_o_z
-    U_in_base_z = axis_x_z*phi_3_o_x - axis_y_ups_axes2_z*c_o_y - axis_z_ups_axes2_in_base_z*c_o_z
-    # (M7) rotational part of Z
-    Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z
-    Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
-    Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) > _TOLERANCE * 0.8) & (abs(root_2) > _TOLERANCE * 0.8)
-    return (ok, (U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,), (),)
-
-
-def _Z_after(c, s, t, f):
-    Z_p_x, Z_p_y, Z_p_z, Z_q_in_base_x, Z_q_in_base_y, Z_q_in_base_z = s
-    total_ups_x, total_ups_y, total_ups_z, total_ups_x_2, total_ups_y_2, total_ups_z_2 = t
+    sums = [0.0] * 6
+    for leg, k in legs[0]:
+        (
+        J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
+            branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
+            ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+            ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ) = k
+        # (ups-K1) from the base point to the connection point
+        q_in_base_x = (
+        R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
+        )
+        q_in_base_y = (
+        R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
+        )
+        q_in_base_z = (
+        R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
+        )
+        S_x = q_in_base_x + t_x - ups_base_point_x
+        S_y = q_in_base_y + t_y - ups_base_point_y
+        S_z = q_in_base_z + t_z - ups_base_point_z
+        # (ups-K2) component along the reference direction
+        px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx
+        # (ups-K3) component across the reference direction
+        py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy
+        # (ups-K4) squared amplitude
+        rho2_1 = px_1*px_1 + py_1*py_1
+        # (ups-K5) amplitude, with the sign of the branch
+        root_1 = branch_1*sqrt(rho2_1)
+        # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
+        xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz
+        # (ups-K13) squared amplitude
+        rho2_2 = rho2_1 + xi_1_t*xi_1_t
+        # (ups-K14) amplitude, with the sign of the branch
+        root_2 = branch_2*sqrt(rho2_2)
+        # (ups-K15) cosine of the angle of joint 2 from its reference direction
+        inv_root_2 = 1.0/root_2
+        c_2 = inv_root_2*root_1
+        # (ups-K16) sine of the angle of joint 2 from its reference direction
+        s_2 = inv_root_2*xi_1_t
+        # (ups-V5) reciprocal vector 1
+        axis_x_x = S_x*inv_root_2
+        axis_x_y = S_y*inv_root_2
+        axis_x_z = S_z*inv_root_2
+        # (ups-K6) cosine of the angle of joint 1 from its reference direction
+        inv_root_1 = 1.0/root_1
+        c_1 = inv_root_1*py_1
+        # (ups-K7) sine of the angle of joint 1 from its reference direction
+        s_1 = inv_root_1*px_1
+        # (ups-V5) reciprocal vector 1
+        axis_z_ups_axes2_in_base_x = s_1*ups_base_frame_xy - c_1*ups_base_frame_xx
+        axis_z_ups_axes2_in_base_y = s_1*ups_base_frame_yy - c_1*ups_base_frame_yx
+        axis_z_ups_axes2_in_base_z = s_1*ups_base_frame_zy - c_1*ups_base_frame_zx
+        axis_y_ups_axes2_x = (
+        axis_x_z*axis_z_ups_axes2_in_base_y - axis_x_y*axis_z_ups_axes2_in_base_z
+        )
+        axis_y_ups_axes2_y = (
+        axis_x_x*axis_z_ups_axes2_in_base_z - axis_x_z*axis_z_ups_axes2_in_base_x
+        )
+        axis_y_ups_axes2_z = (
+        axis_x_y*axis_z_ups_axes2_in_base_x - axis_x_x*axis_z_ups_axes2_in_base_y
+        )
+        # (ups-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
+        g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
+        g_r3_x = g_r0_z*s_2 - c_2*g_r1_y
+        g_r3_y = -c_2*g_r0_z - g_r1_y*s_2
+        # (ups-A1) centripetal acceleration of the connection point
+        u_1_x = W_p_xy*q_in_base_y + W_p_xz*q_in_base_z - W_p_xx*q_in_base_x
+        u_1_y = W_p_xy*q_in_base_x + W_p_yz*q_in_base_z - W_p_yy*q_in_base_y
+        u_1_z = W_p_xz*q_in_base_x + W_p_yz*q_in_base_y - W_p_zz*q_in_base_z
+        u_1_t = axis_y_ups_axes2_x*u_1_x
+        u_1_t_2 = axis_y_ups_axes2_y*u_1_y
+        u_1_t_3 = axis_y_ups_axes2_z*u_1_z
+        u_1_tip_z = (
+        axis_z_ups_axes2_in_base_x*u_1_x + axis_z_ups_axes2_in_base_y*u_1_y +
+            axis_z_ups_axes2_in_base_z*u_1_z
+        )
+        # (ups-N4) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        acc_3_o_x = axis_x_x*u_1_x + axis_x_y*u_1_y + axis_x_z*u_1_z - g_r3_x
+        acc_3_o_y = u_1_t + u_1_t_2 + u_1_t_3 - g_r3_y
+        acc_3_o_z = u_1_tip_z - g_r1_x
+        # (ups-V1) velocity of the connection point
+        S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y
+        S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z
+        S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x
+        S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z
+        # (ups-V8) rate of joint 1
+        qd_2 = (
+        inv_root_2*(S_dot_x*axis_y_ups_axes2_x + S_dot_y*axis_y_ups_axes2_y +
+            S_dot_z*axis_y_ups_axes2_z)
+        )
+        qd_1 = (
+        inv_root_1*(S_dot_x*axis_z_ups_axes2_in_base_x + S_dot_y*axis_z_ups_axes2_in_base_y +
+            S_dot_z*axis_z_ups_axes2_in_base_z)
+        )
+        # (ups-V11) angular velocity of link 1
+        omega_1_t = qd_1*s_2
+        omega_1_t_2 = c_2*qd_1
+        # (ups-A4) angular acceleration of link 2 from the turning of axis 2
+        zeta_2_x = omega_1_t_2*qd_2
+        zeta_2_y = omega_1_t*qd_2
+        # (ups-V13) centripetal tensor of link 2
+        W_2_t = omega_1_t*omega_1_t
+        W_2_t_2 = omega_1_t_2*omega_1_t_2
+        W_2_t_3 = qd_2*qd_2
+        W_2_xy = omega_1_t*omega_1_t_2
+        # (ups-A5) acceleration of the connection point at zero joint accelerations
+        bias_t = 2.0*S_dot_tip_x
+        bias_z = bias_t*omega_1_t_2 + 2.0*root_2*zeta_2_y
+        # (ups-A7) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        rel_o_z = u_1_tip_z - bias_z
+        # (ups-A9) remainder without the acceleration in: acceleration of joint 1
+        qdd_1_o_t = inv_root_2*(u_1_t + u_1_t_2 + u_1_t_3 - bias_t*qd_2)
+        qdd_1_o = inv_root_1*rel_o_z
+        # (ups-A15) remainder without the acceleration in: angular acceleration of link 1
+        alpha_1_o_t = qdd_1_o*s_2
+        alpha_1_o_t_2 = c_2*qdd_1_o
+        # (ups-A18) remainder without the acceleration in: angular acceleration of link 2
+        alpha_2_o_x = alpha_1_o_t - zeta_2_x
+        alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y
+        # (ups-A20) remainder of the acceleration tensor of link 2
+        B_2_o_xy = -2.0*W_2_xy - qdd_1_o_t
+        B_2_o_zx = zeta_2_y - alpha_2_o_y
+        B_2_o_zy = alpha_2_o_x - zeta_2_x
+        # (ups-N14) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        mu_2_o_x = (
+        B_2_o_zy*Sigma_2_yy + J_group_2_xz*qdd_1_o_t + J_group_2_yz*(W_2_t_2 - W_2_t_3) +
+            Sigma_2_zz*alpha_1_o_t + g_r1_x*h_2_z + g_r3_y*h_2_y - B_2_o_zx*J_group_2_xy -
+            acc_3_o_y*h_3_y - acc_3_o_z*h_3_z
+        )
+        mu_2_o_y = (
+        B_2_o_zy*J_group_2_xy + acc_3_o_x*h_3_y + g_r1_x*h_2_x - B_2_o_xy*J_group_2_yz -
+            B_2_o_zx*Sigma_2_xx - J_group_2_xz*(W_2_t - W_2_t_3) - Sigma_2_zz*alpha_1_o_t_2 -
+            acc_3_o_z*h_3_x - g_r3_x*h_2_y
+        )
+        mu_2_o_z = (
+        J_group_2_xy*(W_2_t - W_2_t_2) + J_group_2_xz*alpha_1_o_t + Sigma_2_xx*qdd_1_o_t +
+            acc_3_o_x*h_3_z + acc_3_o_y*h_3_x - B_2_o_xy*Sigma_2_yy - J_group_2_yz*alpha_1_o_t_2 -
+            g_r3_x*h_2_z - g_r3_y*h_2_x
+        )
+        # (ups-N7) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
+        phi_3_o_x = -B_2_o_xy*h_3_z - alpha_1_o_t_2*h_3_y - h_3_x*(W_2_t_2 + W_2_t_3)
+        # (ups-N26) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        c_o_y = (
+        alpha_1_o_t*h_3_y - h_3_x*qdd_1_o_t - h_3_z*(W_2_t + W_2_t_3) - inv_root_2*mu_2_o_z
+        )
+        c_o_z = (
+        B_2_o_zy*h_3_z + h_3_y*(W_2_t + W_2_t_2) - B_2_o_zx*h_3_x - inv_root_1*(mu_2_o_x*s_2 -
+            c_2*mu_2_o_y)
+        )
+        # (ups-N28) velocity and gravity terms of the leg force
+        U_in_base_x = (
+        axis_x_x*phi_3_o_x - axis_y_ups_axes2_x*c_o_y - axis_z_ups_axes2_in_base_x*c_o_z
+        )
+        U_in_base_y = (
+        axis_x_y*phi_3_o_x - axis_y_ups_axes2_y*c_o_y - axis_z_ups_axes2_in_base_y*c_o_z
+        )
+        U_in_base_z = (
+        axis_x_z*phi_3_o_x - axis_y_ups_axes2_z*c_o_y - axis_z_ups_axes2_in_base_z*c_o_z
+        )
+        # (M7) rotational part of Z
+        Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z
+        Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
+        Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
+        ok = (
+        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) > _TOLERANCE * 0.8) &
+            (abs(root_2) > _TOLERANCE * 0.8))
+        )
+        sums = m.added(sums, leg, (
+        U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,
+        ))
+    total_ups_x, total_ups_y, total_ups_z, total_ups_x_2, total_ups_y_2, total_ups_z_2 = sums
     # (M5) translational part of Z
     Z_t_x = Z_p_x + total_ups_x
     Z_t_y = Z_p_y + total_ups_y
@@ -1713,12 +2172,19 @@ def _Z_after(c, s, t, f):
     Z_a_x = Z_q_in_base_x + total_ups_x_2
     Z_a_y = Z_q_in_base_y + total_ups_y_2
     Z_a_z = Z_q_in_base_z + total_ups_z_2
-    ok = True
-    return (ok, (Z_t_x, Z_t_y, Z_t_z, Z_a_x, Z_a_y, Z_a_z,),)
+    out_Z[0] = Z_t_x
+    out_Z[1] = Z_t_y
+    out_Z[2] = Z_t_z
+    out_Z[3] = Z_a_x
+    out_Z[4] = Z_a_y
+    out_Z[5] = Z_a_z
+    return ok, (out_Z,)
 
 
 # H: 186 mul, 138 add, 6 div, 6 sqrt, 0 trig
-def _H_before(c, X, f):
+def _run_H(m, X):
+    sqrt = m.sqrt
+    shared, legs = m.constants("H")
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -1753,64 +2219,72 @@ def _H_before(c, X, f):
     R_zx = quaternion_xz - quaternion_wy
     R_zy = quaternion_wx + quaternion_yz
     R_zz = 1.0 - quaternion_xx - quaternion_yy
-    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    return (ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz,), (),)
-
-
-def _H_ups(c, k, x, s, f):
-    sqrt = f.sqrt
-    (
-    branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-        ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-        ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
-        ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
-    ) = k
-    t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
-    # (ups-K1) from the base point to the connection point
-    q_in_base_x = (
-    R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
-    )
-    q_in_base_y = (
-    R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
-    )
-    q_in_base_z = (
-    R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
-    )
-    S_x = q_in_base_x + t_x - ups_base_point_x
-    S_y = q_in_base_y + t_y - ups_base_point_y
-    S_z = q_in_base_z + t_z - ups_base_point_z
-    # (ups-K2) component along the reference direction
-    px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx
-    # (ups-K3) component across the reference direction
-    py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy
-    # (ups-K4) squared amplitude
-    rho2_1 = px_1*px_1 + py_1*py_1
-    # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
-    xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz
-    # (ups-K13) squared amplitude
-    rho2_2 = rho2_1 + xi_1_t*xi_1_t
-    # (ups-K14) amplitude, with the sign of the branch
-    root_2 = branch_2*sqrt(rho2_2)
-    # (ups-K15) cosine of the angle of joint 2 from its reference direction
-    inv_root_2 = 1.0/root_2
-    # (ups-V5) reciprocal vector 1
-    axis_x_x = S_x*inv_root_2
-    axis_x_y = S_y*inv_root_2
-    axis_x_z = S_z*inv_root_2
-    # (M8) moment of the column's unit force about the platform origin
-    H_a_3_x = axis_x_z*q_in_base_y - axis_x_y*q_in_base_z
-    H_a_3_y = axis_x_x*q_in_base_z - axis_x_z*q_in_base_x
-    H_a_3_z = axis_x_y*q_in_base_x - axis_x_x*q_in_base_y
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8)
-    return (ok, (), (axis_x_x, axis_x_y, axis_x_z, H_a_3_x, H_a_3_y, H_a_3_z,),)
+    ok = True
+    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    out_H = m.zeros(36)
+    for leg, k in legs[0]:
+        (
+        branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+            ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ) = k
+        # (ups-K1) from the base point to the connection point
+        q_in_base_x = (
+        R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
+        )
+        q_in_base_y = (
+        R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
+        )
+        q_in_base_z = (
+        R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
+        )
+        S_x = q_in_base_x + t_x - ups_base_point_x
+        S_y = q_in_base_y + t_y - ups_base_point_y
+        S_z = q_in_base_z + t_z - ups_base_point_z
+        # (ups-K2) component along the reference direction
+        px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx
+        # (ups-K3) component across the reference direction
+        py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy
+        # (ups-K4) squared amplitude
+        rho2_1 = px_1*px_1 + py_1*py_1
+        # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
+        xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz
+        # (ups-K13) squared amplitude
+        rho2_2 = rho2_1 + xi_1_t*xi_1_t
+        # (ups-K14) amplitude, with the sign of the branch
+        root_2 = branch_2*sqrt(rho2_2)
+        # (ups-K15) cosine of the angle of joint 2 from its reference direction
+        inv_root_2 = 1.0/root_2
+        # (ups-V5) reciprocal vector 1
+        axis_x_x = S_x*inv_root_2
+        axis_x_y = S_y*inv_root_2
+        axis_x_z = S_z*inv_root_2
+        # (M8) moment of the column's unit force about the platform origin
+        H_a_3_x = axis_x_z*q_in_base_y - axis_x_y*q_in_base_z
+        H_a_3_y = axis_x_x*q_in_base_z - axis_x_z*q_in_base_x
+        H_a_3_z = axis_x_y*q_in_base_x - axis_x_x*q_in_base_y
+        ok = (
+        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8))
+        )
+        out_H[[0, 1, 2, 3, 4, 5][leg]] = axis_x_x
+        out_H[[6, 7, 8, 9, 10, 11][leg]] = axis_x_y
+        out_H[[12, 13, 14, 15, 16, 17][leg]] = axis_x_z
+        out_H[[18, 19, 20, 21, 22, 23][leg]] = H_a_3_x
+        out_H[[24, 25, 26, 27, 28, 29][leg]] = H_a_3_y
+        out_H[[30, 31, 32, 33, 34, 35][leg]] = H_a_3_z
+    return ok, (out_H,)
 
 
 # required: 1095 mul, 861 add, 12 div, 12 sqrt, 0 trig
-def _required_before(c, X, V, A, f):
+def _run_required(m, X, V, A):
+    sqrt = m.sqrt
+    shared, legs = m.constants("required")
     (
     J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
         gravity_z, h_star_x, h_star_y, h_star_z, m_star,
-    ) = c
+    ) = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -1871,6 +2345,10 @@ def _required_before(c, X, V, A, f):
     alpha_x = A_3
     alpha_y = A_4
     alpha_z = A_5
+    ok = True
+    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    out_required = m.zeros(6)
+    out_H = m.zeros(36)
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -1929,189 +2407,190 @@ def _required_before(c, X, V, A, f):
     mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z
     mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z
     mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z
-    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    return (
-    ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
-        t_dot_z, omega_x, omega_y, omega_z, t_ddot_x, t_ddot_y, t_ddot_z, alpha_x, alpha_y,
-        alpha_z, f_p_x, f_p_y, f_p_z, mu_p_in_base_x, mu_p_in_base_y, mu_p_in_base_z,), (),
-    )
-
-
-def _required_ups(c, k, x, s, f):
-    sqrt = f.sqrt
-    (
-    J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
-        branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
-        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-        ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-        ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
-        ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
-    ) = k
-    (
-    t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
-        t_dot_z, omega_x, omega_y, omega_z, t_ddot_x, t_ddot_y, t_ddot_z, alpha_x, alpha_y,
-        alpha_z,
-    ) = s
-    # (ups-K1) from the base point to the connection point
-    q_in_base_x = (
-    R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
-    )
-    q_in_base_y = (
-    R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
-    )
-    q_in_base_z = (
-    R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
-    )
-    S_x = q_in_base_x + t_x - ups_base_point_x
-    S_y = q_in_base_y + t_y - ups_base_point_y
-    S_z = q_in_base_z + t_z - ups_base_point_z
-    # (ups-K2) component along the reference direction
-    px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx
-    # (ups-K3) component across the reference direction
-    py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy
-    # (ups-K4) squared amplitude
-    rho2_1 = px_1*px_1 + py_1*py_1
-    # (ups-K5) amplitude, with the sign of the branch
-    root_1 = branch_1*sqrt(rho2_1)
-    # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
-    xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz
-    # (ups-K13) squared amplitude
-    rho2_2 = rho2_1 + xi_1_t*xi_1_t
-    # (ups-K14) amplitude, with the sign of the branch
-    root_2 = branch_2*sqrt(rho2_2)
-    # (ups-K15) cosine of the angle of joint 2 from its reference direction
-    inv_root_2 = 1.0/root_2
-    c_2 = inv_root_2*root_1
-    # (ups-K16) sine of the angle of joint 2 from its reference direction
-    s_2 = inv_root_2*xi_1_t
-    # (ups-V5) reciprocal vector 1
-    axis_x_x = S_x*inv_root_2
-    axis_x_y = S_y*inv_root_2
-    axis_x_z = S_z*inv_root_2
-    # (ups-K6) cosine of the angle of joint 1 from its reference direction
-    inv_root_1 = 1.0/root_1
-    c_1 = inv_root_1*py_1
-    # (ups-K7) sine of the angle of joint 1 from its reference direction
-    s_1 = inv_root_1*px_1
-    # (ups-V5) reciprocal vector 1
-    axis_z_ups_axes2_in_base_x = s_1*ups_base_frame_xy - c_1*ups_base_frame_xx
-    axis_z_ups_axes2_in_base_y = s_1*ups_base_frame_yy - c_1*ups_base_frame_yx
-    axis_z_ups_axes2_in_base_z = s_1*ups_base_frame_zy - c_1*ups_base_frame_zx
-    axis_y_ups_axes2_x = axis_x_z*axis_z_ups_axes2_in_base_y - axis_x_y*axis_z_ups_axes2_in_base_z
-    axis_y_ups_axes2_y = axis_x_x*axis_z_ups_axes2_in_base_z - axis_x_z*axis_z_ups_axes2_in_base_x
-    axis_y_ups_axes2_z = axis_x_y*axis_z_ups_axes2_in_base_x - axis_x_x*axis_z_ups_axes2_in_base_y
-    # (ups-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-    g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
-    g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
-    g_r3_x = g_r0_z*s_2 - c_2*g_r1_y
-    g_r3_y = -c_2*g_r0_z - g_r1_y*s_2
-    # (ups-V1) velocity of the connection point
-    S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-    S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-    S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-    S_dot_x = S_dot_t + t_dot_x
-    S_dot_y = S_dot_t_2 + t_dot_y
-    S_dot_z = S_dot_t_3 + t_dot_z
-    S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z
-    # (ups-V8) rate of joint 1
-    qd_2 = (
-    inv_root_2*(S_dot_x*axis_y_ups_axes2_x + S_dot_y*axis_y_ups_axes2_y +
-        S_dot_z*axis_y_ups_axes2_z)
-    )
-    qd_1 = (
-    inv_root_1*(S_dot_x*axis_z_ups_axes2_in_base_x + S_dot_y*axis_z_ups_axes2_in_base_y +
-        S_dot_z*axis_z_ups_axes2_in_base_z)
-    )
-    # (ups-V11) angular velocity of link 1
-    omega_1_t = qd_1*s_2
-    omega_1_t_2 = c_2*qd_1
-    # (ups-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_x = omega_1_t_2*qd_2
-    zeta_2_y = omega_1_t*qd_2
-    # (ups-V13) centripetal tensor of link 2
-    W_2_t = omega_1_t*omega_1_t
-    W_2_t_2 = omega_1_t_2*omega_1_t_2
-    W_2_t_3 = qd_2*qd_2
-    W_2_xy = omega_1_t*omega_1_t_2
-    # (ups-A5) acceleration of the connection point at zero joint accelerations
-    bias_t = 2.0*S_dot_tip_x
-    bias_z = bias_t*omega_1_t_2 + 2.0*root_2*zeta_2_y
-    # (M8) moment of the column's unit force about the platform origin
-    H_a_3_x = axis_x_z*q_in_base_y - axis_x_y*q_in_base_z
-    H_a_3_y = axis_x_x*q_in_base_z - axis_x_z*q_in_base_x
-    H_a_3_z = axis_x_y*q_in_base_x - axis_x_x*q_in_base_y
-    # (ups-A2) acceleration of the connection point without its centripetal part
-    a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-    a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-    a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-    # (ups-A3) acceleration of the connection point
-    S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-    S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-    S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-    S_ddot_t = S_ddot_x*axis_y_ups_axes2_x
-    S_ddot_t_2 = S_ddot_y*axis_y_ups_axes2_y
-    S_ddot_t_3 = S_ddot_z*axis_y_ups_axes2_z
-    S_ddot_tip_z = (
-    S_ddot_x*axis_z_ups_axes2_in_base_x + S_ddot_y*axis_z_ups_axes2_in_base_y +
-        S_ddot_z*axis_z_ups_axes2_in_base_z
-    )
-    # (ups-A6) acceleration of the connection point left to the joint accelerations
-    rel_z = S_ddot_tip_z - bias_z
-    # (ups-A8) acceleration of joint 1
-    qdd_1_t = inv_root_2*(S_ddot_t + S_ddot_t_2 + S_ddot_t_3 - bias_t*qd_2)
-    qdd_1 = inv_root_1*rel_z
-    # (ups-N3) acceleration of the reference point of link 3, less gravity
-    acc_3_x = S_ddot_x*axis_x_x + S_ddot_y*axis_x_y + S_ddot_z*axis_x_z - g_r3_x
-    acc_3_y = S_ddot_t + S_ddot_t_2 + S_ddot_t_3 - g_r3_y
-    acc_3_z = S_ddot_tip_z - g_r1_x
-    # (ups-A13) angular acceleration of link 1
-    alpha_1_t = qdd_1*s_2
-    alpha_1_t_2 = c_2*qdd_1
-    # (ups-A16) angular acceleration of link 2
-    alpha_2_x = alpha_1_t - zeta_2_x
-    alpha_2_y = -alpha_1_t_2 - zeta_2_y
-    # (ups-A19) acceleration tensor of link 2
-    B_2_xy = -2.0*W_2_xy - qdd_1_t
-    B_2_zx = zeta_2_y - alpha_2_y
-    B_2_zy = alpha_2_x - zeta_2_x
-    # (ups-N12) inertia moment of the links that turn with link 2, about their reference points
-    mu_2_x = (
-    B_2_zy*Sigma_2_yy + J_group_2_xz*qdd_1_t + J_group_2_yz*(W_2_t_2 - W_2_t_3) +
-        Sigma_2_zz*alpha_1_t + g_r1_x*h_2_z + g_r3_y*h_2_y - B_2_zx*J_group_2_xy - acc_3_y*h_3_y -
-        acc_3_z*h_3_z
-    )
-    mu_2_y = (
-    B_2_zy*J_group_2_xy + acc_3_x*h_3_y + g_r1_x*h_2_x - B_2_xy*J_group_2_yz - B_2_zx*Sigma_2_xx -
-        J_group_2_xz*(W_2_t - W_2_t_3) - Sigma_2_zz*alpha_1_t_2 - acc_3_z*h_3_x - g_r3_x*h_2_y
-    )
-    mu_2_z = (
-    J_group_2_xy*(W_2_t - W_2_t_2) + J_group_2_xz*alpha_1_t + Sigma_2_xx*qdd_1_t + acc_3_x*h_3_z +
-        acc_3_y*h_3_x - B_2_xy*Sigma_2_yy - J_group_2_yz*alpha_1_t_2 - g_r3_x*h_2_z - g_r3_y*h_2_x
-    )
-    # (ups-N5) inertia force of link 3 from its turning about its reference point
-    phi_3_x = -B_2_xy*h_3_z - alpha_1_t_2*h_3_y - h_3_x*(W_2_t_2 + W_2_t_3)
-    # (ups-N24) leg force on the platform without actuation and without the mass at the connection point
-    c_y = alpha_1_t*h_3_y - h_3_x*qdd_1_t - h_3_z*(W_2_t + W_2_t_3) - inv_root_2*mu_2_z
-    c_z = (
-    B_2_zy*h_3_z + h_3_y*(W_2_t + W_2_t_2) - B_2_zx*h_3_x - inv_root_1*(mu_2_x*s_2 - c_2*mu_2_y)
-    )
-    c_in_base_x = axis_y_ups_axes2_x*c_y + axis_z_ups_axes2_in_base_x*c_z - axis_x_x*phi_3_x
-    c_in_base_y = axis_y_ups_axes2_y*c_y + axis_z_ups_axes2_in_base_y*c_z - axis_x_y*phi_3_x
-    c_in_base_z = axis_y_ups_axes2_z*c_y + axis_z_ups_axes2_in_base_z*c_z - axis_x_z*phi_3_x
-    # (E5) moment that actuators and external wrench must give
-    R_a_t = c_in_base_z*q_in_base_y - c_in_base_y*q_in_base_z
-    R_a_t_2 = c_in_base_x*q_in_base_z - c_in_base_z*q_in_base_x
-    R_a_t_3 = c_in_base_y*q_in_base_x - c_in_base_x*q_in_base_y
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) > _TOLERANCE * 0.8) & (abs(root_2) > _TOLERANCE * 0.8)
-    return (
-    ok, (c_in_base_x, c_in_base_y, c_in_base_z, R_a_t, R_a_t_2, R_a_t_3,), (axis_x_x, axis_x_y,
-        axis_x_z, H_a_3_x, H_a_3_y, H_a_3_z,),
-    )
-
-
-def _required_after(c, s, t, f):
-    f_p_x, f_p_y, f_p_z, mu_p_in_base_x, mu_p_in_base_y, mu_p_in_base_z = s
-    total_ups_x, total_ups_y, total_ups_z, total_ups_x_2, total_ups_y_2, total_ups_z_2 = t
+    sums = [0.0] * 6
+    for leg, k in legs[0]:
+        (
+        J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
+            branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
+            ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+            ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ) = k
+        # (ups-K1) from the base point to the connection point
+        q_in_base_x = (
+        R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
+        )
+        q_in_base_y = (
+        R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
+        )
+        q_in_base_z = (
+        R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
+        )
+        S_x = q_in_base_x + t_x - ups_base_point_x
+        S_y = q_in_base_y + t_y - ups_base_point_y
+        S_z = q_in_base_z + t_z - ups_base_point_z
+        # (ups-K2) component along the reference direction
+        px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx
+        # (ups-K3) component across the reference direction
+        py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy
+        # (ups-K4) squared amplitude
+        rho2_1 = px_1*px_1 + py_1*py_1
+        # (ups-K5) amplitude, with the sign of the branch
+        root_1 = branch_1*sqrt(rho2_1)
+        # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
+        xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz
+        # (ups-K13) squared amplitude
+        rho2_2 = rho2_1 + xi_1_t*xi_1_t
+        # (ups-K14) amplitude, with the sign of the branch
+        root_2 = branch_2*sqrt(rho2_2)
+        # (ups-K15) cosine of the angle of joint 2 from its reference direction
+        inv_root_2 = 1.0/root_2
+        c_2 = inv_root_2*root_1
+        # (ups-K16) sine of the angle of joint 2 from its reference direction
+        s_2 = inv_root_2*xi_1_t
+        # (ups-V5) reciprocal vector 1
+        axis_x_x = S_x*inv_root_2
+        axis_x_y = S_y*inv_root_2
+        axis_x_z = S_z*inv_root_2
+        # (ups-K6) cosine of the angle of joint 1 from its reference direction
+        inv_root_1 = 1.0/root_1
+        c_1 = inv_root_1*py_1
+        # (ups-K7) sine of the angle of joint 1 from its reference direction
+        s_1 = inv_root_1*px_1
+        # (ups-V5) reciprocal vector 1
+        axis_z_ups_axes2_in_base_x = s_1*ups_base_frame_xy - c_1*ups_base_frame_xx
+        axis_z_ups_axes2_in_base_y = s_1*ups_base_frame_yy - c_1*ups_base_frame_yx
+        axis_z_ups_axes2_in_base_z = s_1*ups_base_frame_zy - c_1*ups_base_frame_zx
+        axis_y_ups_axes2_x = (
+        axis_x_z*axis_z_ups_axes2_in_base_y - axis_x_y*axis_z_ups_axes2_in_base_z
+        )
+        axis_y_ups_axes2_y = (
+        axis_x_x*axis_z_ups_axes2_in_base_z - axis_x_z*axis_z_ups_axes2_in_base_x
+        )
+        axis_y_ups_axes2_z = (
+        axis_x_y*axis_z_ups_axes2_in_base_x - axis_x_x*axis_z_ups_axes2_in_base_y
+        )
+        # (ups-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
+        g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
+        g_r3_x = g_r0_z*s_2 - c_2*g_r1_y
+        g_r3_y = -c_2*g_r0_z - g_r1_y*s_2
+        # (ups-V1) velocity of the connection point
+        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
+        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
+        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
+        S_dot_x = S_dot_t + t_dot_x
+        S_dot_y = S_dot_t_2 + t_dot_y
+        S_dot_z = S_dot_t_3 + t_dot_z
+        S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z
+        # (ups-V8) rate of joint 1
+        qd_2 = (
+        inv_root_2*(S_dot_x*axis_y_ups_axes2_x + S_dot_y*axis_y_ups_axes2_y +
+            S_dot_z*axis_y_ups_axes2_z)
+        )
+        qd_1 = (
+        inv_root_1*(S_dot_x*axis_z_ups_axes2_in_base_x + S_dot_y*axis_z_ups_axes2_in_base_y +
+            S_dot_z*axis_z_ups_axes2_in_base_z)
+        )
+        # (ups-V11) angular velocity of link 1
+        omega_1_t = qd_1*s_2
+        omega_1_t_2 = c_2*qd_1
+        # (ups-A4) angular acceleration of link 2 from the turning of axis 2
+        zeta_2_x = omega_1_t_2*qd_2
+        zeta_2_y = omega_1_t*qd_2
+        # (ups-V13) centripetal tensor of link 2
+        W_2_t = omega_1_t*omega_1_t
+        W_2_t_2 = omega_1_t_2*omega_1_t_2
+        W_2_t_3 = qd_2*qd_2
+        W_2_xy = omega_1_t*omega_1_t_2
+        # (ups-A5) acceleration of the connection point at zero joint accelerations
+        bias_t = 2.0*S_dot_tip_x
+        bias_z = bias_t*omega_1_t_2 + 2.0*root_2*zeta_2_y
+        # (M8) moment of the column's unit force about the platform origin
+        H_a_3_x = axis_x_z*q_in_base_y - axis_x_y*q_in_base_z
+        H_a_3_y = axis_x_x*q_in_base_z - axis_x_z*q_in_base_x
+        H_a_3_z = axis_x_y*q_in_base_x - axis_x_x*q_in_base_y
+        # (ups-A2) acceleration of the connection point without its centripetal part
+        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
+        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
+        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
+        # (ups-A3) acceleration of the connection point
+        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
+        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
+        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
+        S_ddot_t = S_ddot_x*axis_y_ups_axes2_x
+        S_ddot_t_2 = S_ddot_y*axis_y_ups_axes2_y
+        S_ddot_t_3 = S_ddot_z*axis_y_ups_axes2_z
+        S_ddot_tip_z = (
+        S_ddot_x*axis_z_ups_axes2_in_base_x + S_ddot_y*axis_z_ups_axes2_in_base_y +
+            S_ddot_z*axis_z_ups_axes2_in_base_z
+        )
+        # (ups-A6) acceleration of the connection point left to the joint accelerations
+        rel_z = S_ddot_tip_z - bias_z
+        # (ups-A8) acceleration of joint 1
+        qdd_1_t = inv_root_2*(S_ddot_t + S_ddot_t_2 + S_ddot_t_3 - bias_t*qd_2)
+        qdd_1 = inv_root_1*rel_z
+        # (ups-N3) acceleration of the reference point of link 3, less gravity
+        acc_3_x = S_ddot_x*axis_x_x + S_ddot_y*axis_x_y + S_ddot_z*axis_x_z - g_r3_x
+        acc_3_y = S_ddot_t + S_ddot_t_2 + S_ddot_t_3 - g_r3_y
+        acc_3_z = S_ddot_tip_z - g_r1_x
+        # (ups-A13) angular acceleration of link 1
+        alpha_1_t = qdd_1*s_2
+        alpha_1_t_2 = c_2*qdd_1
+        # (ups-A16) angular acceleration of link 2
+        alpha_2_x = alpha_1_t - zeta_2_x
+        alpha_2_y = -alpha_1_t_2 - zeta_2_y
+        # (ups-A19) acceleration tensor of link 2
+        B_2_xy = -2.0*W_2_xy - qdd_1_t
+        B_2_zx = zeta_2_y - alpha_2_y
+        B_2_zy = alpha_2_x - zeta_2_x
+        # (ups-N12) inertia moment of the links that turn with link 2, about their reference points
+        mu_2_x = (
+        B_2_zy*Sigma_2_yy + J_group_2_xz*qdd_1_t + J_group_2_yz*(W_2_t_2 - W_2_t_3) +
+            Sigma_2_zz*alpha_1_t + g_r1_x*h_2_z + g_r3_y*h_2_y - B_2_zx*J_group_2_xy -
+            acc_3_y*h_3_y - acc_3_z*h_3_z
+        )
+        mu_2_y = (
+        B_2_zy*J_group_2_xy + acc_3_x*h_3_y + g_r1_x*h_2_x - B_2_xy*J_group_2_yz -
+            B_2_zx*Sigma_2_xx - J_group_2_xz*(W_2_t - W_2_t_3) - Sigma_2_zz*alpha_1_t_2 -
+            acc_3_z*h_3_x - g_r3_x*h_2_y
+        )
+        mu_2_z = (
+        J_group_2_xy*(W_2_t - W_2_t_2) + J_group_2_xz*alpha_1_t + Sigma_2_xx*qdd_1_t +
+            acc_3_x*h_3_z + acc_3_y*h_3_x - B_2_xy*Sigma_2_yy - J_group_2_yz*alpha_1_t_2 -
+            g_r3_x*h_2_z - g_r3_y*h_2_x
+        )
+        # (ups-N5) inertia force of link 3 from its turning about its reference point
+        phi_3_x = -B_2_xy*h_3_z - alpha_1_t_2*h_3_y - h_3_x*(W_2_t_2 + W_2_t_3)
+        # (ups-N24) leg force on the platform without actuation and without the mass at the connection point
+        c_y = alpha_1_t*h_3_y - h_3_x*qdd_1_t - h_3_z*(W_2_t + W_2_t_3) - inv_root_2*mu_2_z
+        c_z = (
+        B_2_zy*h_3_z + h_3_y*(W_2_t + W_2_t_2) - B_2_zx*h_3_x - inv_root_1*(mu_2_x*s_2 -
+            c_2*mu_2_y)
+        )
+        c_in_base_x = axis_y_ups_axes2_x*c_y + axis_z_ups_axes2_in_base_x*c_z - axis_x_x*phi_3_x
+        c_in_base_y = axis_y_ups_axes2_y*c_y + axis_z_ups_axes2_in_base_y*c_z - axis_x_y*phi_3_x
+        c_in_base_z = axis_y_ups_axes2_z*c_y + axis_z_ups_axes2_in_base_z*c_z - axis_x_z*phi_3_x
+        # (E5) moment that actuators and external wrench must give
+        R_a_t = c_in_base_z*q_in_base_y - c_in_base_y*q_in_base_z
+        R_a_t_2 = c_in_base_x*q_in_base_z - c_in_base_z*q_in_base_x
+        R_a_t_3 = c_in_base_y*q_in_base_x - c_in_base_x*q_in_base_y
+        ok = (
+        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) > _TOLERANCE * 0.8) &
+            (abs(root_2) > _TOLERANCE * 0.8))
+        )
+        sums = m.added(sums, leg, (
+        c_in_base_x, c_in_base_y, c_in_base_z, R_a_t, R_a_t_2, R_a_t_3,
+        ))
+        out_H[[0, 1, 2, 3, 4, 5][leg]] = axis_x_x
+        out_H[[6, 7, 8, 9, 10, 11][leg]] = axis_x_y
+        out_H[[12, 13, 14, 15, 16, 17][leg]] = axis_x_z
+        out_H[[18, 19, 20, 21, 22, 23][leg]] = H_a_3_x
+        out_H[[24, 25, 26, 27, 28, 29][leg]] = H_a_3_y
+        out_H[[30, 31, 32, 33, 34, 35][leg]] = H_a_3_z
+    total_ups_x, total_ups_y, total_ups_z, total_ups_x_2, total_ups_y_2, total_ups_z_2 = sums
     # (E4) force that actuators and external wrench must give
     R_t_x = f_p_x - total_ups_x
     R_t_y = f_p_y - total_ups_y
@@ -2120,12 +2599,20 @@ def _required_after(c, s, t, f):
     R_a_x = mu_p_in_base_x - total_ups_x_2
     R_a_y = mu_p_in_base_y - total_ups_y_2
     R_a_z = mu_p_in_base_z - total_ups_z_2
-    ok = True
-    return (ok, (R_t_x, R_t_y, R_t_z, R_a_x, R_a_y, R_a_z,),)
+    out_required[0] = R_t_x
+    out_required[1] = R_t_y
+    out_required[2] = R_t_z
+    out_required[3] = R_a_x
+    out_required[4] = R_a_y
+    out_required[5] = R_a_z
+    return ok, (out_required, out_H,)
 
 
 # inverse_kinematics: 162 mul, 120 add, 12 div, 12 sqrt, 12 trig
-def _inverse_kinematics_before(c, X, f):
+def _run_inverse_kinematics(m, X):
+    sqrt = m.sqrt
+    atan2 = m.atan2
+    shared, legs = m.constants("inverse_kinematics")
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -2160,61 +2647,65 @@ def _inverse_kinematics_before(c, X, f):
     R_zx = quaternion_xz - quaternion_wy
     R_zy = quaternion_wx + quaternion_yz
     R_zz = 1.0 - quaternion_xx - quaternion_yy
-    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    return (ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz,), (),)
-
-
-def _inverse_kinematics_ups(c, k, x, s, f):
-    sqrt = f.sqrt
-    atan2 = f.atan2
-    (
-    branch_1, branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-        ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-        ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-        ups_base_point_z, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
-    ) = k
-    t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
-    # (ups-K1) from the base point to the connection point
-    S_x = (
-    t_x + R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z -
-        ups_base_point_x
-    )
-    S_y = (
-    t_y + R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z -
-        ups_base_point_y
-    )
-    S_z = (
-    t_z + R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z -
-        ups_base_point_z
-    )
-    # (ups-K2) component along the reference direction
-    px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx
-    # (ups-K3) component across the reference direction
-    py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy
-    # (ups-K4) squared amplitude
-    rho2_1 = px_1*px_1 + py_1*py_1
-    # (ups-K5) amplitude, with the sign of the branch
-    root_1 = branch_1*sqrt(rho2_1)
-    # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
-    xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz
-    # (ups-K13) squared amplitude
-    rho2_2 = rho2_1 + xi_1_t*xi_1_t
-    # (ups-K14) amplitude, with the sign of the branch
-    root_2 = branch_2*sqrt(rho2_2)
-    # (ups-K15) cosine of the angle of joint 2 from its reference direction
-    inv_root_2 = 1.0/root_2
-    # (ups-K6) cosine of the angle of joint 1 from its reference direction
-    inv_root_1 = 1.0/root_1
-    # (ups-K8) displacement of joint 1
-    q_1 = atan2(inv_root_1*py_1, inv_root_1*px_1)
-    # (ups-K17) displacement of joint 2
-    q_2 = atan2(-inv_root_2*xi_1_t, inv_root_2*root_1)
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
-    return (ok, (), (q_1, q_2, root_2,),)
+    ok = True
+    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    out_q = m.zeros(18)
+    for leg, k in legs[0]:
+        (
+        branch_1, branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
+            ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
+            ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
+            ups_base_point_z, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ) = k
+        # (ups-K1) from the base point to the connection point
+        S_x = (
+        t_x + R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z -
+            ups_base_point_x
+        )
+        S_y = (
+        t_y + R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z -
+            ups_base_point_y
+        )
+        S_z = (
+        t_z + R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z -
+            ups_base_point_z
+        )
+        # (ups-K2) component along the reference direction
+        px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx
+        # (ups-K3) component across the reference direction
+        py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy
+        # (ups-K4) squared amplitude
+        rho2_1 = px_1*px_1 + py_1*py_1
+        # (ups-K5) amplitude, with the sign of the branch
+        root_1 = branch_1*sqrt(rho2_1)
+        # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
+        xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz
+        # (ups-K13) squared amplitude
+        rho2_2 = rho2_1 + xi_1_t*xi_1_t
+        # (ups-K14) amplitude, with the sign of the branch
+        root_2 = branch_2*sqrt(rho2_2)
+        # (ups-K15) cosine of the angle of joint 2 from its reference direction
+        inv_root_2 = 1.0/root_2
+        # (ups-K6) cosine of the angle of joint 1 from its reference direction
+        inv_root_1 = 1.0/root_1
+        # (ups-K8) displacement of joint 1
+        q_1 = atan2(inv_root_1*py_1, inv_root_1*px_1)
+        # (ups-K17) displacement of joint 2
+        q_2 = atan2(-inv_root_2*xi_1_t, inv_root_2*root_1)
+        ok = (
+        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001))
+        )
+        out_q[[0, 3, 6, 9, 12, 15][leg]] = q_1
+        out_q[[1, 4, 7, 10, 13, 16][leg]] = q_2
+        out_q[[2, 5, 8, 11, 14, 17][leg]] = root_2
+    return ok, (out_q,)
 
 
 # joint_rates: 342 mul, 228 add, 12 div, 12 sqrt, 0 trig
-def _joint_rates_before(c, X, V, f):
+def _run_joint_rates(m, X, V):
+    sqrt = m.sqrt
+    shared, legs = m.constants("joint_rates")
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -2262,89 +2753,89 @@ def _joint_rates_before(c, X, V, f):
     omega_x = V_3
     omega_y = V_4
     omega_z = V_5
-    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    return (
-    ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
-        t_dot_z, omega_x, omega_y, omega_z,), (),
-    )
-
-
-def _joint_rates_ups(c, k, x, s, f):
-    sqrt = f.sqrt
-    (
-    branch_1, branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-        ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-        ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-        ups_base_point_z, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
-    ) = k
-    (
-    t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
-        t_dot_z, omega_x, omega_y, omega_z,
-    ) = s
-    # (ups-K1) from the base point to the connection point
-    q_in_base_x = (
-    R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
-    )
-    q_in_base_y = (
-    R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
-    )
-    q_in_base_z = (
-    R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
-    )
-    S_x = q_in_base_x + t_x - ups_base_point_x
-    S_y = q_in_base_y + t_y - ups_base_point_y
-    S_z = q_in_base_z + t_z - ups_base_point_z
-    # (ups-K2) component along the reference direction
-    px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx
-    # (ups-K3) component across the reference direction
-    py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy
-    # (ups-K4) squared amplitude
-    rho2_1 = px_1*px_1 + py_1*py_1
-    # (ups-K5) amplitude, with the sign of the branch
-    root_1 = branch_1*sqrt(rho2_1)
-    # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
-    xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz
-    # (ups-K13) squared amplitude
-    rho2_2 = rho2_1 + xi_1_t*xi_1_t
-    # (ups-K14) amplitude, with the sign of the branch
-    root_2 = branch_2*sqrt(rho2_2)
-    # (ups-K15) cosine of the angle of joint 2 from its reference direction
-    inv_root_2 = 1.0/root_2
-    # (ups-V5) reciprocal vector 1
-    axis_x_x = S_x*inv_root_2
-    axis_x_y = S_y*inv_root_2
-    axis_x_z = S_z*inv_root_2
-    # (ups-K6) cosine of the angle of joint 1 from its reference direction
-    inv_root_1 = 1.0/root_1
-    c_1 = inv_root_1*py_1
-    # (ups-K7) sine of the angle of joint 1 from its reference direction
-    s_1 = inv_root_1*px_1
-    # (ups-V5) reciprocal vector 1
-    axis_z_ups_axes2_in_base_x = s_1*ups_base_frame_xy - c_1*ups_base_frame_xx
-    axis_z_ups_axes2_in_base_y = s_1*ups_base_frame_yy - c_1*ups_base_frame_yx
-    axis_z_ups_axes2_in_base_z = s_1*ups_base_frame_zy - c_1*ups_base_frame_zx
-    # (ups-V1) velocity of the connection point
-    S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y
-    S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z
-    S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x
-    S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z
-    # (ups-V8) rate of joint 1
-    qd_2 = (
-    inv_root_2*(S_dot_x*(axis_x_z*axis_z_ups_axes2_in_base_y -
-        axis_x_y*axis_z_ups_axes2_in_base_z) + S_dot_y*(axis_x_x*axis_z_ups_axes2_in_base_z -
-        axis_x_z*axis_z_ups_axes2_in_base_x) + S_dot_z*(axis_x_y*axis_z_ups_axes2_in_base_x -
-        axis_x_x*axis_z_ups_axes2_in_base_y))
-    )
-    qd_1 = (
-    inv_root_1*(S_dot_x*axis_z_ups_axes2_in_base_x + S_dot_y*axis_z_ups_axes2_in_base_y +
-        S_dot_z*axis_z_ups_axes2_in_base_z)
-    )
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) > _TOLERANCE * 0.8) & (abs(root_2) > _TOLERANCE * 0.8)
-    return (ok, (), (qd_1, qd_2, S_dot_tip_x,),)
+    ok = True
+    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    out_qd = m.zeros(18)
+    for leg, k in legs[0]:
+        (
+        branch_1, branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
+            ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
+            ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
+            ups_base_point_z, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ) = k
+        # (ups-K1) from the base point to the connection point
+        q_in_base_x = (
+        R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
+        )
+        q_in_base_y = (
+        R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
+        )
+        q_in_base_z = (
+        R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
+        )
+        S_x = q_in_base_x + t_x - ups_base_point_x
+        S_y = q_in_base_y + t_y - ups_base_point_y
+        S_z = q_in_base_z + t_z - ups_base_point_z
+        # (ups-K2) component along the reference direction
+        px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx
+        # (ups-K3) component across the reference direction
+        py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy
+        # (ups-K4) squared amplitude
+        rho2_1 = px_1*px_1 + py_1*py_1
+        # (ups-K5) amplitude, with the sign of the branch
+        root_1 = branch_1*sqrt(rho2_1)
+        # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
+        xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz
+        # (ups-K13) squared amplitude
+        rho2_2 = rho2_1 + xi_1_t*xi_1_t
+        # (ups-K14) amplitude, with the sign of the branch
+        root_2 = branch_2*sqrt(rho2_2)
+        # (ups-K15) cosine of the angle of joint 2 from its reference direction
+        inv_root_2 = 1.0/root_2
+        # (ups-V5) reciprocal vector 1
+        axis_x_x = S_x*inv_root_2
+        axis_x_y = S_y*inv_root_2
+        axis_x_z = S_z*inv_root_2
+        # (ups-K6) cosine of the angle of joint 1 from its reference direction
+        inv_root_1 = 1.0/root_1
+        c_1 = inv_root_1*py_1
+        # (ups-K7) sine of the angle of joint 1 from its reference direction
+        s_1 = inv_root_1*px_1
+        # (ups-V5) reciprocal vector 1
+        axis_z_ups_axes2_in_base_x = s_1*ups_base_frame_xy - c_1*ups_base_frame_xx
+        axis_z_ups_axes2_in_base_y = s_1*ups_base_frame_yy - c_1*ups_base_frame_yx
+        axis_z_ups_axes2_in_base_z = s_1*ups_base_frame_zy - c_1*ups_base_frame_zx
+        # (ups-V1) velocity of the connection point
+        S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y
+        S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z
+        S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x
+        S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z
+        # (ups-V8) rate of joint 1
+        qd_2 = (
+        inv_root_2*(S_dot_x*(axis_x_z*axis_z_ups_axes2_in_base_y -
+            axis_x_y*axis_z_ups_axes2_in_base_z) + S_dot_y*(axis_x_x*axis_z_ups_axes2_in_base_z -
+            axis_x_z*axis_z_ups_axes2_in_base_x) + S_dot_z*(axis_x_y*axis_z_ups_axes2_in_base_x -
+            axis_x_x*axis_z_ups_axes2_in_base_y))
+        )
+        qd_1 = (
+        inv_root_1*(S_dot_x*axis_z_ups_axes2_in_base_x + S_dot_y*axis_z_ups_axes2_in_base_y +
+            S_dot_z*axis_z_ups_axes2_in_base_z)
+        )
+        ok = (
+        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) > _TOLERANCE * 0.8) &
+            (abs(root_2) > _TOLERANCE * 0.8))
+        )
+        out_qd[[0, 3, 6, 9, 12, 15][leg]] = qd_1
+        out_qd[[1, 4, 7, 10, 13, 16][leg]] = qd_2
+        out_qd[[2, 5, 8, 11, 14, 17][leg]] = S_dot_tip_x
+    return ok, (out_qd,)
 
 
 # joint_accelerations: 564 mul, 372 add, 12 div, 12 sqrt, 0 trig
-def _joint_accelerations_before(c, X, V, A, f):
+def _run_joint_accelerations(m, X, V, A):
+    sqrt = m.sqrt
+    shared, legs = m.constants("joint_accelerations")
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -2405,124 +2896,128 @@ def _joint_accelerations_before(c, X, V, A, f):
     alpha_x = A_3
     alpha_y = A_4
     alpha_z = A_5
-    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    return (
-    ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
-        t_dot_z, omega_x, omega_y, omega_z, t_ddot_x, t_ddot_y, t_ddot_z, alpha_x, alpha_y,
-        alpha_z,), (),
-    )
-
-
-def _joint_accelerations_ups(c, k, x, s, f):
-    sqrt = f.sqrt
-    (
-    branch_1, branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-        ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-        ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-        ups_base_point_z, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
-    ) = k
-    (
-    t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
-        t_dot_z, omega_x, omega_y, omega_z, t_ddot_x, t_ddot_y, t_ddot_z, alpha_x, alpha_y,
-        alpha_z,
-    ) = s
-    # (ups-K1) from the base point to the connection point
-    q_in_base_x = (
-    R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
-    )
-    q_in_base_y = (
-    R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
-    )
-    q_in_base_z = (
-    R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
-    )
-    S_x = q_in_base_x + t_x - ups_base_point_x
-    S_y = q_in_base_y + t_y - ups_base_point_y
-    S_z = q_in_base_z + t_z - ups_base_point_z
-    # (ups-K2) component along the reference direction
-    px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx
-    # (ups-K3) component across the reference direction
-    py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy
-    # (ups-K4) squared amplitude
-    rho2_1 = px_1*px_1 + py_1*py_1
-    # (ups-K5) amplitude, with the sign of the branch
-    root_1 = branch_1*sqrt(rho2_1)
-    # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
-    xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz
-    # (ups-K13) squared amplitude
-    rho2_2 = rho2_1 + xi_1_t*xi_1_t
-    # (ups-K14) amplitude, with the sign of the branch
-    root_2 = branch_2*sqrt(rho2_2)
-    # (ups-K15) cosine of the angle of joint 2 from its reference direction
-    inv_root_2 = 1.0/root_2
-    # (ups-V5) reciprocal vector 1
-    axis_x_x = S_x*inv_root_2
-    axis_x_y = S_y*inv_root_2
-    axis_x_z = S_z*inv_root_2
-    # (ups-K6) cosine of the angle of joint 1 from its reference direction
-    inv_root_1 = 1.0/root_1
-    c_1 = inv_root_1*py_1
-    # (ups-K7) sine of the angle of joint 1 from its reference direction
-    s_1 = inv_root_1*px_1
-    # (ups-V5) reciprocal vector 1
-    axis_z_ups_axes2_in_base_x = s_1*ups_base_frame_xy - c_1*ups_base_frame_xx
-    axis_z_ups_axes2_in_base_y = s_1*ups_base_frame_yy - c_1*ups_base_frame_yx
-    axis_z_ups_axes2_in_base_z = s_1*ups_base_frame_zy - c_1*ups_base_frame_zx
-    axis_y_ups_axes2_x = axis_x_z*axis_z_ups_axes2_in_base_y - axis_x_y*axis_z_ups_axes2_in_base_z
-    axis_y_ups_axes2_y = axis_x_x*axis_z_ups_axes2_in_base_z - axis_x_z*axis_z_ups_axes2_in_base_x
-    axis_y_ups_axes2_z = axis_x_y*axis_z_ups_axes2_in_base_x - axis_x_x*axis_z_ups_axes2_in_base_y
-    # (ups-V1) velocity of the connection point
-    S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-    S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-    S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-    S_dot_x = S_dot_t + t_dot_x
-    S_dot_y = S_dot_t_2 + t_dot_y
-    S_dot_z = S_dot_t_3 + t_dot_z
-    S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z
-    # (ups-V8) rate of joint 1
-    qd_2 = (
-    inv_root_2*(S_dot_x*axis_y_ups_axes2_x + S_dot_y*axis_y_ups_axes2_y +
-        S_dot_z*axis_y_ups_axes2_z)
-    )
-    qd_1 = (
-    inv_root_1*(S_dot_x*axis_z_ups_axes2_in_base_x + S_dot_y*axis_z_ups_axes2_in_base_y +
-        S_dot_z*axis_z_ups_axes2_in_base_z)
-    )
-    # (ups-V11) angular velocity of link 1
-    omega_1_t = inv_root_2*qd_1*xi_1_t
-    omega_1_t_2 = inv_root_2*qd_1*root_1
-    # (ups-A5) acceleration of the connection point at zero joint accelerations
-    bias_t = 2.0*S_dot_tip_x
-    bias_z = bias_t*omega_1_t_2 + 2.0*omega_1_t*qd_2*root_2
-    # (ups-A2) acceleration of the connection point without its centripetal part
-    a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-    a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-    a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-    # (ups-A3) acceleration of the connection point
-    S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-    S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-    S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-    # (ups-A6) acceleration of the connection point left to the joint accelerations
-    rel_x = (
-    S_ddot_x*axis_x_x + S_ddot_y*axis_x_y + S_ddot_z*axis_x_z + root_2*(omega_1_t_2*omega_1_t_2 +
-        qd_2*qd_2)
-    )
-    rel_z = (
-    S_ddot_x*axis_z_ups_axes2_in_base_x + S_ddot_y*axis_z_ups_axes2_in_base_y +
-        S_ddot_z*axis_z_ups_axes2_in_base_z - bias_z
-    )
-    # (ups-A8) acceleration of joint 1
-    qdd_2 = (
-    inv_root_2*(S_ddot_x*axis_y_ups_axes2_x + S_ddot_y*axis_y_ups_axes2_y +
-        S_ddot_z*axis_y_ups_axes2_z - bias_t*qd_2) + omega_1_t*omega_1_t_2
-    )
-    qdd_1 = inv_root_1*rel_z
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) > _TOLERANCE * 0.8) & (abs(root_2) > _TOLERANCE * 0.8)
-    return (ok, (), (qdd_1, qdd_2, rel_x,),)
+    ok = True
+    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    out_qdd = m.zeros(18)
+    for leg, k in legs[0]:
+        (
+        branch_1, branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
+            ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
+            ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
+            ups_base_point_z, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ) = k
+        # (ups-K1) from the base point to the connection point
+        q_in_base_x = (
+        R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
+        )
+        q_in_base_y = (
+        R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
+        )
+        q_in_base_z = (
+        R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
+        )
+        S_x = q_in_base_x + t_x - ups_base_point_x
+        S_y = q_in_base_y + t_y - ups_base_point_y
+        S_z = q_in_base_z + t_z - ups_base_point_z
+        # (ups-K2) component along the reference direction
+        px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx
+        # (ups-K3) component across the reference direction
+        py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy
+        # (ups-K4) squared amplitude
+        rho2_1 = px_1*px_1 + py_1*py_1
+        # (ups-K5) amplitude, with the sign of the branch
+        root_1 = branch_1*sqrt(rho2_1)
+        # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
+        xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz
+        # (ups-K13) squared amplitude
+        rho2_2 = rho2_1 + xi_1_t*xi_1_t
+        # (ups-K14) amplitude, with the sign of the branch
+        root_2 = branch_2*sqrt(rho2_2)
+        # (ups-K15) cosine of the angle of joint 2 from its reference direction
+        inv_root_2 = 1.0/root_2
+        # (ups-V5) reciprocal vector 1
+        axis_x_x = S_x*inv_root_2
+        axis_x_y = S_y*inv_root_2
+        axis_x_z = S_z*inv_root_2
+        # (ups-K6) cosine of the angle of joint 1 from its reference direction
+        inv_root_1 = 1.0/root_1
+        c_1 = inv_root_1*py_1
+        # (ups-K7) sine of the angle of joint 1 from its reference direction
+        s_1 = inv_root_1*px_1
+        # (ups-V5) reciprocal vector 1
+        axis_z_ups_axes2_in_base_x = s_1*ups_base_frame_xy - c_1*ups_base_frame_xx
+        axis_z_ups_axes2_in_base_y = s_1*ups_base_frame_yy - c_1*ups_base_frame_yx
+        axis_z_ups_axes2_in_base_z = s_1*ups_base_frame_zy - c_1*ups_base_frame_zx
+        axis_y_ups_axes2_x = (
+        axis_x_z*axis_z_ups_axes2_in_base_y - axis_x_y*axis_z_ups_axes2_in_base_z
+        )
+        axis_y_ups_axes2_y = (
+        axis_x_x*axis_z_ups_axes2_in_base_z - axis_x_z*axis_z_ups_axes2_in_base_x
+        )
+        axis_y_ups_axes2_z = (
+        axis_x_y*axis_z_ups_axes2_in_base_x - axis_x_x*axis_z_ups_axes2_in_base_y
+        )
+        # (ups-V1) velocity of the connection point
+        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
+        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
+        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
+        S_dot_x = S_dot_t + t_dot_x
+        S_dot_y = S_dot_t_2 + t_dot_y
+        S_dot_z = S_dot_t_3 + t_dot_z
+        S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z
+        # (ups-V8) rate of joint 1
+        qd_2 = (
+        inv_root_2*(S_dot_x*axis_y_ups_axes2_x + S_dot_y*axis_y_ups_axes2_y +
+            S_dot_z*axis_y_ups_axes2_z)
+        )
+        qd_1 = (
+        inv_root_1*(S_dot_x*axis_z_ups_axes2_in_base_x + S_dot_y*axis_z_ups_axes2_in_base_y +
+            S_dot_z*axis_z_ups_axes2_in_base_z)
+        )
+        # (ups-V11) angular velocity of link 1
+        omega_1_t = inv_root_2*qd_1*xi_1_t
+        omega_1_t_2 = inv_root_2*qd_1*root_1
+        # (ups-A5) acceleration of the connection point at zero joint accelerations
+        bias_t = 2.0*S_dot_tip_x
+        bias_z = bias_t*omega_1_t_2 + 2.0*omega_1_t*qd_2*root_2
+        # (ups-A2) acceleration of the connection point without its centripetal part
+        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
+        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
+        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
+        # (ups-A3) acceleration of the connection point
+        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
+        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
+        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
+        # (ups-A6) acceleration of the connection point left to the joint accelerations
+        rel_x = (
+        S_ddot_x*axis_x_x + S_ddot_y*axis_x_y + S_ddot_z*axis_x_z +
+            root_2*(omega_1_t_2*omega_1_t_2 + qd_2*qd_2)
+        )
+        rel_z = (
+        S_ddot_x*axis_z_ups_axes2_in_base_x + S_ddot_y*axis_z_ups_axes2_in_base_y +
+            S_ddot_z*axis_z_ups_axes2_in_base_z - bias_z
+        )
+        # (ups-A8) acceleration of joint 1
+        qdd_2 = (
+        inv_root_2*(S_ddot_x*axis_y_ups_axes2_x + S_ddot_y*axis_y_ups_axes2_y +
+            S_ddot_z*axis_y_ups_axes2_z - bias_t*qd_2) + omega_1_t*omega_1_t_2
+        )
+        qdd_1 = inv_root_1*rel_z
+        ok = (
+        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) > _TOLERANCE * 0.8) &
+            (abs(root_2) > _TOLERANCE * 0.8))
+        )
+        out_qdd[[0, 3, 6, 9, 12, 15][leg]] = qdd_1
+        out_qdd[[1, 4, 7, 10, 13, 16][leg]] = qdd_2
+        out_qdd[[2, 5, 8, 11, 14, 17][leg]] = rel_x
+    return ok, (out_qdd,)
 
 
 # legs: 948 mul, 726 add, 12 div, 12 sqrt, 0 trig
-def _legs_before(c, X, V, A, f):
+def _run_legs(m, X, V, A):
+    sqrt = m.sqrt
+    shared, legs = m.constants("legs")
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -2583,190 +3078,199 @@ def _legs_before(c, X, V, A, f):
     alpha_x = A_3
     alpha_y = A_4
     alpha_z = A_5
-    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    return (
-    ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
-        t_dot_z, omega_x, omega_y, omega_z, t_ddot_x, t_ddot_y, t_ddot_z, alpha_x, alpha_y,
-        alpha_z,), (),
-    )
-
-
-def _legs_ups(c, k, x, s, f):
-    sqrt = f.sqrt
-    (
-    J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
-        branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
-        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-        ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-        ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_link3_mass,
-        ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
-    ) = k
-    (
-    t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
-        t_dot_z, omega_x, omega_y, omega_z, t_ddot_x, t_ddot_y, t_ddot_z, alpha_x, alpha_y,
-        alpha_z,
-    ) = s
-    # (ups-K1) from the base point to the connection point
-    q_in_base_x = (
-    R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
-    )
-    q_in_base_y = (
-    R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
-    )
-    q_in_base_z = (
-    R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
-    )
-    S_x = q_in_base_x + t_x - ups_base_point_x
-    S_y = q_in_base_y + t_y - ups_base_point_y
-    S_z = q_in_base_z + t_z - ups_base_point_z
-    # (ups-K2) component along the reference direction
-    px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx
-    # (ups-K3) component across the reference direction
-    py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy
-    # (ups-K4) squared amplitude
-    rho2_1 = px_1*px_1 + py_1*py_1
-    # (ups-K5) amplitude, with the sign of the branch
-    root_1 = branch_1*sqrt(rho2_1)
-    # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
-    xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz
-    # (ups-K13) squared amplitude
-    rho2_2 = rho2_1 + xi_1_t*xi_1_t
-    # (ups-K14) amplitude, with the sign of the branch
-    root_2 = branch_2*sqrt(rho2_2)
-    # (ups-K15) cosine of the angle of joint 2 from its reference direction
-    inv_root_2 = 1.0/root_2
-    c_2 = inv_root_2*root_1
-    # (ups-K16) sine of the angle of joint 2 from its reference direction
-    s_2 = inv_root_2*xi_1_t
-    # (ups-V5) reciprocal vector 1
-    axis_x_x = S_x*inv_root_2
-    axis_x_y = S_y*inv_root_2
-    axis_x_z = S_z*inv_root_2
-    # (ups-K6) cosine of the angle of joint 1 from its reference direction
-    inv_root_1 = 1.0/root_1
-    c_1 = inv_root_1*py_1
-    # (ups-K7) sine of the angle of joint 1 from its reference direction
-    s_1 = inv_root_1*px_1
-    # (ups-V5) reciprocal vector 1
-    axis_z_ups_axes2_in_base_x = s_1*ups_base_frame_xy - c_1*ups_base_frame_xx
-    axis_z_ups_axes2_in_base_y = s_1*ups_base_frame_yy - c_1*ups_base_frame_yx
-    axis_z_ups_axes2_in_base_z = s_1*ups_base_frame_zy - c_1*ups_base_frame_zx
-    axis_y_ups_axes2_x = axis_x_z*axis_z_ups_axes2_in_base_y - axis_x_y*axis_z_ups_axes2_in_base_z
-    axis_y_ups_axes2_y = axis_x_x*axis_z_ups_axes2_in_base_z - axis_x_z*axis_z_ups_axes2_in_base_x
-    axis_y_ups_axes2_z = axis_x_y*axis_z_ups_axes2_in_base_x - axis_x_x*axis_z_ups_axes2_in_base_y
-    # (ups-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-    g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
-    g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
-    g_r3_x = g_r0_z*s_2 - c_2*g_r1_y
-    g_r3_y = -c_2*g_r0_z - g_r1_y*s_2
-    # (ups-V1) velocity of the connection point
-    S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
-    S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
-    S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
-    S_dot_x = S_dot_t + t_dot_x
-    S_dot_y = S_dot_t_2 + t_dot_y
-    S_dot_z = S_dot_t_3 + t_dot_z
-    S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z
-    # (ups-V8) rate of joint 1
-    qd_2 = (
-    inv_root_2*(S_dot_x*axis_y_ups_axes2_x + S_dot_y*axis_y_ups_axes2_y +
-        S_dot_z*axis_y_ups_axes2_z)
-    )
-    qd_1 = (
-    inv_root_1*(S_dot_x*axis_z_ups_axes2_in_base_x + S_dot_y*axis_z_ups_axes2_in_base_y +
-        S_dot_z*axis_z_ups_axes2_in_base_z)
-    )
-    # (ups-V11) angular velocity of link 1
-    omega_1_t = qd_1*s_2
-    omega_1_t_2 = c_2*qd_1
-    # (ups-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_x = omega_1_t_2*qd_2
-    zeta_2_y = omega_1_t*qd_2
-    # (ups-V13) centripetal tensor of link 2
-    W_2_t = omega_1_t*omega_1_t
-    W_2_t_2 = omega_1_t_2*omega_1_t_2
-    W_2_t_3 = qd_2*qd_2
-    W_2_xy = omega_1_t*omega_1_t_2
-    # (ups-A5) acceleration of the connection point at zero joint accelerations
-    bias_t = 2.0*S_dot_tip_x
-    bias_z = bias_t*omega_1_t_2 + 2.0*root_2*zeta_2_y
-    # (ups-A2) acceleration of the connection point without its centripetal part
-    a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
-    a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
-    a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
-    # (ups-A3) acceleration of the connection point
-    S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
-    S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
-    S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-    S_ddot_t = S_ddot_x*axis_y_ups_axes2_x
-    S_ddot_t_2 = S_ddot_y*axis_y_ups_axes2_y
-    S_ddot_t_3 = S_ddot_z*axis_y_ups_axes2_z
-    S_ddot_tip_z = (
-    S_ddot_x*axis_z_ups_axes2_in_base_x + S_ddot_y*axis_z_ups_axes2_in_base_y +
-        S_ddot_z*axis_z_ups_axes2_in_base_z
-    )
-    # (ups-A6) acceleration of the connection point left to the joint accelerations
-    rel_z = S_ddot_tip_z - bias_z
-    # (ups-A8) acceleration of joint 1
-    qdd_1_t = inv_root_2*(S_ddot_t + S_ddot_t_2 + S_ddot_t_3 - bias_t*qd_2)
-    qdd_1 = inv_root_1*rel_z
-    # (ups-N3) acceleration of the reference point of link 3, less gravity
-    acc_3_x = S_ddot_x*axis_x_x + S_ddot_y*axis_x_y + S_ddot_z*axis_x_z - g_r3_x
-    acc_3_y = S_ddot_t + S_ddot_t_2 + S_ddot_t_3 - g_r3_y
-    acc_3_z = S_ddot_tip_z - g_r1_x
-    # (ups-A13) angular acceleration of link 1
-    alpha_1_t = qdd_1*s_2
-    alpha_1_t_2 = c_2*qdd_1
-    # (ups-A16) angular acceleration of link 2
-    alpha_2_x = alpha_1_t - zeta_2_x
-    alpha_2_y = -alpha_1_t_2 - zeta_2_y
-    # (ups-A19) acceleration tensor of link 2
-    B_2_xy = -2.0*W_2_xy - qdd_1_t
-    B_2_zx = zeta_2_y - alpha_2_y
-    B_2_zy = alpha_2_x - zeta_2_x
-    # (ups-N12) inertia moment of the links that turn with link 2, about their reference points
-    mu_2_x = (
-    B_2_zy*Sigma_2_yy + J_group_2_xz*qdd_1_t + J_group_2_yz*(W_2_t_2 - W_2_t_3) +
-        Sigma_2_zz*alpha_1_t + g_r1_x*h_2_z + g_r3_y*h_2_y - B_2_zx*J_group_2_xy - acc_3_y*h_3_y -
-        acc_3_z*h_3_z
-    )
-    mu_2_y = (
-    B_2_zy*J_group_2_xy + acc_3_x*h_3_y + g_r1_x*h_2_x - B_2_xy*J_group_2_yz - B_2_zx*Sigma_2_xx -
-        J_group_2_xz*(W_2_t - W_2_t_3) - Sigma_2_zz*alpha_1_t_2 - acc_3_z*h_3_x - g_r3_x*h_2_y
-    )
-    mu_2_z = (
-    J_group_2_xy*(W_2_t - W_2_t_2) + J_group_2_xz*alpha_1_t + Sigma_2_xx*qdd_1_t + acc_3_x*h_3_z +
-        acc_3_y*h_3_x - B_2_xy*Sigma_2_yy - J_group_2_yz*alpha_1_t_2 - g_r3_x*h_2_z - g_r3_y*h_2_x
-    )
-    # (ups-N24) leg force on the platform without actuation and without the mass at the connection point
-    c_y = alpha_1_t*h_3_y - h_3_x*qdd_1_t - h_3_z*(W_2_t + W_2_t_3) - inv_root_2*mu_2_z
-    c_z = (
-    B_2_zy*h_3_z + h_3_y*(W_2_t + W_2_t_2) - B_2_zx*h_3_x - inv_root_1*(mu_2_x*s_2 - c_2*mu_2_y)
-    )
-    # (ups-N29) leg force on the platform without actuation, the last link's mass included
-    c_true_x = (
-    B_2_xy*h_3_z + alpha_1_t_2*h_3_y + h_3_x*(W_2_t_2 + W_2_t_3) - acc_3_x*ups_link3_mass
-    )
-    c_true_y = c_y - acc_3_y*ups_link3_mass
-    c_true_z = c_z - acc_3_z*ups_link3_mass
-    c_true_in_base_x = (
-    axis_x_x*c_true_x + axis_y_ups_axes2_x*c_true_y + axis_z_ups_axes2_in_base_x*c_true_z
-    )
-    c_true_in_base_y = (
-    axis_x_y*c_true_x + axis_y_ups_axes2_y*c_true_y + axis_z_ups_axes2_in_base_y*c_true_z
-    )
-    c_true_in_base_z = (
-    axis_x_z*c_true_x + axis_y_ups_axes2_z*c_true_y + axis_z_ups_axes2_in_base_z*c_true_z
-    )
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) > _TOLERANCE * 0.8) & (abs(root_2) > _TOLERANCE * 0.8)
-    return (
-    ok, (), (c_true_in_base_x, c_true_in_base_y, c_true_in_base_z, axis_x_x, axis_x_y, axis_x_z,),
-    )
+    ok = True
+    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    out_leg_force = m.zeros(18)
+    out_drive = m.zeros(18)
+    for leg, k in legs[0]:
+        (
+        J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
+            branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
+            ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+            ups_link3_mass, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ) = k
+        # (ups-K1) from the base point to the connection point
+        q_in_base_x = (
+        R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
+        )
+        q_in_base_y = (
+        R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
+        )
+        q_in_base_z = (
+        R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
+        )
+        S_x = q_in_base_x + t_x - ups_base_point_x
+        S_y = q_in_base_y + t_y - ups_base_point_y
+        S_z = q_in_base_z + t_z - ups_base_point_z
+        # (ups-K2) component along the reference direction
+        px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx
+        # (ups-K3) component across the reference direction
+        py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy
+        # (ups-K4) squared amplitude
+        rho2_1 = px_1*px_1 + py_1*py_1
+        # (ups-K5) amplitude, with the sign of the branch
+        root_1 = branch_1*sqrt(rho2_1)
+        # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
+        xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz
+        # (ups-K13) squared amplitude
+        rho2_2 = rho2_1 + xi_1_t*xi_1_t
+        # (ups-K14) amplitude, with the sign of the branch
+        root_2 = branch_2*sqrt(rho2_2)
+        # (ups-K15) cosine of the angle of joint 2 from its reference direction
+        inv_root_2 = 1.0/root_2
+        c_2 = inv_root_2*root_1
+        # (ups-K16) sine of the angle of joint 2 from its reference direction
+        s_2 = inv_root_2*xi_1_t
+        # (ups-V5) reciprocal vector 1
+        axis_x_x = S_x*inv_root_2
+        axis_x_y = S_y*inv_root_2
+        axis_x_z = S_z*inv_root_2
+        # (ups-K6) cosine of the angle of joint 1 from its reference direction
+        inv_root_1 = 1.0/root_1
+        c_1 = inv_root_1*py_1
+        # (ups-K7) sine of the angle of joint 1 from its reference direction
+        s_1 = inv_root_1*px_1
+        # (ups-V5) reciprocal vector 1
+        axis_z_ups_axes2_in_base_x = s_1*ups_base_frame_xy - c_1*ups_base_frame_xx
+        axis_z_ups_axes2_in_base_y = s_1*ups_base_frame_yy - c_1*ups_base_frame_yx
+        axis_z_ups_axes2_in_base_z = s_1*ups_base_frame_zy - c_1*ups_base_frame_zx
+        axis_y_ups_axes2_x = (
+        axis_x_z*axis_z_ups_axes2_in_base_y - axis_x_y*axis_z_ups_axes2_in_base_z
+        )
+        axis_y_ups_axes2_y = (
+        axis_x_x*axis_z_ups_axes2_in_base_z - axis_x_z*axis_z_ups_axes2_in_base_x
+        )
+        axis_y_ups_axes2_z = (
+        axis_x_y*axis_z_ups_axes2_in_base_x - axis_x_x*axis_z_ups_axes2_in_base_y
+        )
+        # (ups-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
+        g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
+        g_r3_x = g_r0_z*s_2 - c_2*g_r1_y
+        g_r3_y = -c_2*g_r0_z - g_r1_y*s_2
+        # (ups-V1) velocity of the connection point
+        S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
+        S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
+        S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x
+        S_dot_x = S_dot_t + t_dot_x
+        S_dot_y = S_dot_t_2 + t_dot_y
+        S_dot_z = S_dot_t_3 + t_dot_z
+        S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z
+        # (ups-V8) rate of joint 1
+        qd_2 = (
+        inv_root_2*(S_dot_x*axis_y_ups_axes2_x + S_dot_y*axis_y_ups_axes2_y +
+            S_dot_z*axis_y_ups_axes2_z)
+        )
+        qd_1 = (
+        inv_root_1*(S_dot_x*axis_z_ups_axes2_in_base_x + S_dot_y*axis_z_ups_axes2_in_base_y +
+            S_dot_z*axis_z_ups_axes2_in_base_z)
+        )
+        # (ups-V11) angular velocity of link 1
+        omega_1_t = qd_1*s_2
+        omega_1_t_2 = c_2*qd_1
+        # (ups-A4) angular acceleration of link 2 from the turning of axis 2
+        zeta_2_x = omega_1_t_2*qd_2
+        zeta_2_y = omega_1_t*qd_2
+        # (ups-V13) centripetal tensor of link 2
+        W_2_t = omega_1_t*omega_1_t
+        W_2_t_2 = omega_1_t_2*omega_1_t_2
+        W_2_t_3 = qd_2*qd_2
+        W_2_xy = omega_1_t*omega_1_t_2
+        # (ups-A5) acceleration of the connection point at zero joint accelerations
+        bias_t = 2.0*S_dot_tip_x
+        bias_z = bias_t*omega_1_t_2 + 2.0*root_2*zeta_2_y
+        # (ups-A2) acceleration of the connection point without its centripetal part
+        a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
+        a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
+        a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x
+        # (ups-A3) acceleration of the connection point
+        S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
+        S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
+        S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
+        S_ddot_t = S_ddot_x*axis_y_ups_axes2_x
+        S_ddot_t_2 = S_ddot_y*axis_y_ups_axes2_y
+        S_ddot_t_3 = S_ddot_z*axis_y_ups_axes2_z
+        S_ddot_tip_z = (
+        S_ddot_x*axis_z_ups_axes2_in_base_x + S_ddot_y*axis_z_ups_axes2_in_base_y +
+            S_ddot_z*axis_z_ups_axes2_in_base_z
+        )
+        # (ups-A6) acceleration of the connection point left to the joint accelerations
+        rel_z = S_ddot_tip_z - bias_z
+        # (ups-A8) acceleration of joint 1
+        qdd_1_t = inv_root_2*(S_ddot_t + S_ddot_t_2 + S_ddot_t_3 - bias_t*qd_2)
+        qdd_1 = inv_root_1*rel_z
+        # (ups-N3) acceleration of the reference point of link 3, less gravity
+        acc_3_x = S_ddot_x*axis_x_x + S_ddot_y*axis_x_y + S_ddot_z*axis_x_z - g_r3_x
+        acc_3_y = S_ddot_t + S_ddot_t_2 + S_ddot_t_3 - g_r3_y
+        acc_3_z = S_ddot_tip_z - g_r1_x
+        # (ups-A13) angular acceleration of link 1
+        alpha_1_t = qdd_1*s_2
+        alpha_1_t_2 = c_2*qdd_1
+        # (ups-A16) angular acceleration of link 2
+        alpha_2_x = alpha_1_t - zeta_2_x
+        alpha_2_y = -alpha_1_t_2 - zeta_2_y
+        # (ups-A19) acceleration tensor of link 2
+        B_2_xy = -2.0*W_2_xy - qdd_1_t
+        B_2_zx = zeta_2_y - alpha_2_y
+        B_2_zy = alpha_2_x - zeta_2_x
+        # (ups-N12) inertia moment of the links that turn with link 2, about their reference points
+        mu_2_x = (
+        B_2_zy*Sigma_2_yy + J_group_2_xz*qdd_1_t + J_group_2_yz*(W_2_t_2 - W_2_t_3) +
+            Sigma_2_zz*alpha_1_t + g_r1_x*h_2_z + g_r3_y*h_2_y - B_2_zx*J_group_2_xy -
+            acc_3_y*h_3_y - acc_3_z*h_3_z
+        )
+        mu_2_y = (
+        B_2_zy*J_group_2_xy + acc_3_x*h_3_y + g_r1_x*h_2_x - B_2_xy*J_group_2_yz -
+            B_2_zx*Sigma_2_xx - J_group_2_xz*(W_2_t - W_2_t_3) - Sigma_2_zz*alpha_1_t_2 -
+            acc_3_z*h_3_x - g_r3_x*h_2_y
+        )
+        mu_2_z = (
+        J_group_2_xy*(W_2_t - W_2_t_2) + J_group_2_xz*alpha_1_t + Sigma_2_xx*qdd_1_t +
+            acc_3_x*h_3_z + acc_3_y*h_3_x - B_2_xy*Sigma_2_yy - J_group_2_yz*alpha_1_t_2 -
+            g_r3_x*h_2_z - g_r3_y*h_2_x
+        )
+        # (ups-N24) leg force on the platform without actuation and without the mass at the connection point
+        c_y = alpha_1_t*h_3_y - h_3_x*qdd_1_t - h_3_z*(W_2_t + W_2_t_3) - inv_root_2*mu_2_z
+        c_z = (
+        B_2_zy*h_3_z + h_3_y*(W_2_t + W_2_t_2) - B_2_zx*h_3_x - inv_root_1*(mu_2_x*s_2 -
+            c_2*mu_2_y)
+        )
+        # (ups-N29) leg force on the platform without actuation, the last link's mass included
+        c_true_x = (
+        B_2_xy*h_3_z + alpha_1_t_2*h_3_y + h_3_x*(W_2_t_2 + W_2_t_3) - acc_3_x*ups_link3_mass
+        )
+        c_true_y = c_y - acc_3_y*ups_link3_mass
+        c_true_z = c_z - acc_3_z*ups_link3_mass
+        c_true_in_base_x = (
+        axis_x_x*c_true_x + axis_y_ups_axes2_x*c_true_y + axis_z_ups_axes2_in_base_x*c_true_z
+        )
+        c_true_in_base_y = (
+        axis_x_y*c_true_x + axis_y_ups_axes2_y*c_true_y + axis_z_ups_axes2_in_base_y*c_true_z
+        )
+        c_true_in_base_z = (
+        axis_x_z*c_true_x + axis_y_ups_axes2_z*c_true_y + axis_z_ups_axes2_in_base_z*c_true_z
+        )
+        ok = (
+        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) > _TOLERANCE * 0.8) &
+            (abs(root_2) > _TOLERANCE * 0.8))
+        )
+        out_leg_force[[0, 3, 6, 9, 12, 15][leg]] = c_true_in_base_x
+        out_leg_force[[1, 4, 7, 10, 13, 16][leg]] = c_true_in_base_y
+        out_leg_force[[2, 5, 8, 11, 14, 17][leg]] = c_true_in_base_z
+        out_drive[[0, 3, 6, 9, 12, 15][leg]] = axis_x_x
+        out_drive[[1, 4, 7, 10, 13, 16][leg]] = axis_x_y
+        out_drive[[2, 5, 8, 11, 14, 17][leg]] = axis_x_z
+    return ok, (out_leg_force, out_drive,)
 
 
 # potential: 309 mul, 234 add, 12 div, 12 sqrt, 0 trig
-def _potential_before(c, X, f):
-    gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star = c
+def _run_potential(m, X):
+    sqrt = m.sqrt
+    shared, legs = m.constants("potential")
+    gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -2801,91 +3305,91 @@ def _potential_before(c, X, f):
     R_zx = quaternion_xz - quaternion_wy
     R_zy = quaternion_wx + quaternion_yz
     R_zz = 1.0 - quaternion_xx - quaternion_yy
+    ok = True
+    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    out_potential = m.zeros(1)
     # (V1) potential energy
     potential_t = (
     gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + m_star*t_x) +
         gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
         gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + m_star*t_z)
     )
-    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    return (
-    ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, potential_t,), (),
-    )
-
-
-def _potential_ups(c, k, x, s, f):
-    sqrt = f.sqrt
-    (
-    b_r0_x, b_r0_y, b_r0_z, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z,
-        h_3_x, h_3_y, h_3_z, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-        ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-        ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-        ups_base_point_z, ups_link2_mass, ups_platform_point_x, ups_platform_point_y,
-        ups_platform_point_z,
-    ) = k
-    t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
-    # (ups-K1) from the base point to the connection point
-    S_x = (
-    t_x + R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z -
-        ups_base_point_x
-    )
-    S_y = (
-    t_y + R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z -
-        ups_base_point_y
-    )
-    S_z = (
-    t_z + R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z -
-        ups_base_point_z
-    )
-    # (ups-K2) component along the reference direction
-    px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx
-    # (ups-K3) component across the reference direction
-    py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy
-    # (ups-K4) squared amplitude
-    rho2_1 = px_1*px_1 + py_1*py_1
-    # (ups-K5) amplitude, with the sign of the branch
-    root_1 = branch_1*sqrt(rho2_1)
-    # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
-    xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz
-    # (ups-K13) squared amplitude
-    rho2_2 = rho2_1 + xi_1_t*xi_1_t
-    # (ups-K14) amplitude, with the sign of the branch
-    root_2 = branch_2*sqrt(rho2_2)
-    # (ups-K15) cosine of the angle of joint 2 from its reference direction
-    inv_root_2 = 1.0/root_2
-    c_2 = inv_root_2*root_1
-    # (ups-K16) sine of the angle of joint 2 from its reference direction
-    s_2 = inv_root_2*xi_1_t
-    # (ups-K6) cosine of the angle of joint 1 from its reference direction
-    inv_root_1 = 1.0/root_1
-    c_1 = inv_root_1*py_1
-    # (ups-K7) sine of the angle of joint 1 from its reference direction
-    s_1 = inv_root_1*px_1
-    # (ups-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-    g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
-    # (V1) potential energy
-    b_r1_y = -b_r0_x*s_1 - b_r0_y*c_1
-    potential_t_2 = (
-    (g_r0_y*s_1 - c_1*g_r0_x)*(h_2_y + h_3_y + ups_link2_mass*(b_r0_y*s_1 - b_r0_x*c_1)) +
-        (g_r0_z*s_2 - c_2*g_r1_y)*(h_2_x + h_3_x + ups_link2_mass*(b_r0_z*s_2 - b_r1_y*c_2)) -
-        (-c_2*g_r0_z - g_r1_y*s_2)*(h_2_z + h_3_z - ups_link2_mass*(-b_r0_z*c_2 - b_r1_y*s_2))
-    )
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
-    return (ok, (potential_t_2,), (),)
-
-
-def _potential_after(c, s, t, f):
-    potential_t, = s
-    total_ups, = t
+    sums = [0.0] * 1
+    for leg, k in legs[0]:
+        (
+        b_r0_x, b_r0_y, b_r0_z, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z,
+            h_3_x, h_3_y, h_3_z, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
+            ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
+            ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
+            ups_base_point_z, ups_link2_mass, ups_platform_point_x, ups_platform_point_y,
+            ups_platform_point_z,
+        ) = k
+        # (ups-K1) from the base point to the connection point
+        S_x = (
+        t_x + R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z -
+            ups_base_point_x
+        )
+        S_y = (
+        t_y + R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z -
+            ups_base_point_y
+        )
+        S_z = (
+        t_z + R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z -
+            ups_base_point_z
+        )
+        # (ups-K2) component along the reference direction
+        px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx
+        # (ups-K3) component across the reference direction
+        py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy
+        # (ups-K4) squared amplitude
+        rho2_1 = px_1*px_1 + py_1*py_1
+        # (ups-K5) amplitude, with the sign of the branch
+        root_1 = branch_1*sqrt(rho2_1)
+        # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
+        xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz
+        # (ups-K13) squared amplitude
+        rho2_2 = rho2_1 + xi_1_t*xi_1_t
+        # (ups-K14) amplitude, with the sign of the branch
+        root_2 = branch_2*sqrt(rho2_2)
+        # (ups-K15) cosine of the angle of joint 2 from its reference direction
+        inv_root_2 = 1.0/root_2
+        c_2 = inv_root_2*root_1
+        # (ups-K16) sine of the angle of joint 2 from its reference direction
+        s_2 = inv_root_2*xi_1_t
+        # (ups-K6) cosine of the angle of joint 1 from its reference direction
+        inv_root_1 = 1.0/root_1
+        c_1 = inv_root_1*py_1
+        # (ups-K7) sine of the angle of joint 1 from its reference direction
+        s_1 = inv_root_1*px_1
+        # (ups-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
+        # (V1) potential energy
+        b_r1_y = -b_r0_x*s_1 - b_r0_y*c_1
+        potential_t_2 = (
+        (g_r0_y*s_1 - c_1*g_r0_x)*(h_2_y + h_3_y + ups_link2_mass*(b_r0_y*s_1 - b_r0_x*c_1)) +
+            (g_r0_z*s_2 - c_2*g_r1_y)*(h_2_x + h_3_x + ups_link2_mass*(b_r0_z*s_2 - b_r1_y*c_2)) -
+            (-c_2*g_r0_z - g_r1_y*s_2)*(h_2_z + h_3_z - ups_link2_mass*(-b_r0_z*c_2 - b_r1_y*s_2))
+        )
+        ok = (
+        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001))
+        )
+        sums = m.added(sums, leg, (
+        potential_t_2,
+        ))
+    total_ups, = sums
     # (V1) potential energy
     potential = -potential_t - total_ups
-    ok = True
-    return (ok, (potential,),)
+    out_potential[0] = potential
+    return ok, (out_potential,)
 
 
 # condition: 235 mul, 192 add, 6 div, 25 sqrt, 0 trig
-def _condition_before(c, X, f):
-    legs_size, = c
+def _run_condition(m, X):
+    sqrt = m.sqrt
+    least = m.least
+    shared, legs = m.constants("condition")
+    b_c_x, b_c_y, b_c_z, legs_size, spread_t = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -2920,948 +3424,619 @@ def _condition_before(c, X, f):
     R_zx = quaternion_xz - quaternion_wy
     R_zy = quaternion_wx + quaternion_yz
     R_zz = 1.0 - quaternion_xx - quaternion_yy
-    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    return (
-    ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz,), (legs_size,),
-    )
-
-
-def _condition_ups(c, k, x, s, f):
-    sqrt = f.sqrt
-    least = f.least
-    b_c_x, b_c_y, b_c_z = c
-    (
-    branch_1, branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-        ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-        ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-        ups_base_point_z, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
-    ) = k
-    t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
-    # (ups-K1) from the base point to the connection point
-    q_in_base_x = (
-    R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
-    )
-    q_in_base_y = (
-    R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
-    )
-    q_in_base_z = (
-    R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
-    )
-    S_x = q_in_base_x + t_x - ups_base_point_x
-    S_y = q_in_base_y + t_y - ups_base_point_y
-    S_z = q_in_base_z + t_z - ups_base_point_z
-    # (ups-K2) component along the reference direction
-    px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx
-    # (ups-K3) component across the reference direction
-    py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy
-    # (ups-K4) squared amplitude
-    rho2_1 = px_1*px_1 + py_1*py_1
-    # (ups-K5) amplitude, with the sign of the branch
-    root_1 = branch_1*sqrt(rho2_1)
-    # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
-    xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz
-    # (ups-K13) squared amplitude
-    rho2_2 = rho2_1 + xi_1_t*xi_1_t
-    # (ups-K14) amplitude, with the sign of the branch
-    root_2 = branch_2*sqrt(rho2_2)
-    # (ups-K15) cosine of the angle of joint 2 from its reference direction
-    inv_root_2 = 1.0/root_2
-    # (ups-V5) reciprocal vector 1
-    axis_x_x = S_x*inv_root_2
-    axis_x_y = S_y*inv_root_2
-    axis_x_z = S_z*inv_root_2
-    # (M8) moment of the column's unit force about the platform origin
-    H_a_3_x = axis_x_z*q_in_base_y - axis_x_y*q_in_base_z
-    H_a_3_y = axis_x_x*q_in_base_z - axis_x_z*q_in_base_x
-    H_a_3_z = axis_x_y*q_in_base_x - axis_x_x*q_in_base_y
-    # (C2) rms distance of the platform points from their centroid
-    spread_t_2 = b_c_x - ups_platform_point_x
-    spread_t_3 = b_c_y - ups_platform_point_y
-    spread_t_4 = b_c_z - ups_platform_point_z
-    spread_t_5 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3 + spread_t_4*spread_t_4
-    # (ups-K4) squared amplitude
-    pivot_size = abs(rho2_1)
-    # (ups-K13) squared amplitude
-    pivot_size_2 = abs(rho2_2)
-    # (ups-V5) reciprocal vector 1
-    pivot_size_3 = abs(root_1)
-    pivot_size_4 = abs(root_2)
-    # (ups-N21) force at the connection point that balances the leg's inertia and weight along all freedoms
-    least_pivots = (
-    least(least(least(1.25*sqrt(pivot_size), 1.25*sqrt(pivot_size_2)), 1.25*pivot_size_3),
-        1.25*pivot_size_4)
-    )
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) > _TOLERANCE * 0.8) & (abs(root_2) > _TOLERANCE * 0.8)
-    return (
-    ok, (spread_t_5,), (axis_x_x, axis_x_y, axis_x_z, H_a_3_x, H_a_3_y, H_a_3_z, least_pivots,),
-    )
-
-
-def _condition_after(c, s, t, f):
-    sqrt = f.sqrt
-    spread_t, = c
-    total_ups, = t
+    valid = True
+    reached = True
+    clear = True
+    valid = valid & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    out_H = m.zeros(36)
+    out_lengths = m.zeros(2)
+    out_pivots = m.zeros(6)
+    out_reach = m.zeros(6)
+    out_lengths[1] = legs_size
+    sums = [0.0] * 1
+    for leg, k in legs[0]:
+        (
+        branch_1, branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
+            ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
+            ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
+            ups_base_point_z, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ) = k
+        # (ups-K1) from the base point to the connection point
+        q_in_base_x = (
+        R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
+        )
+        q_in_base_y = (
+        R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
+        )
+        q_in_base_z = (
+        R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
+        )
+        S_x = q_in_base_x + t_x - ups_base_point_x
+        S_y = q_in_base_y + t_y - ups_base_point_y
+        S_z = q_in_base_z + t_z - ups_base_point_z
+        # (ups-K2) component along the reference direction
+        px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx
+        # (ups-K3) component across the reference direction
+        py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy
+        # (ups-K4) squared amplitude
+        rho2_1 = px_1*px_1 + py_1*py_1
+        # (ups-K5) amplitude, with the sign of the branch
+        root_1 = branch_1*sqrt(rho2_1)
+        # (ups-K9) the vector from joint 1 to the connection point, resolved along link 1
+        xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz
+        # (ups-K13) squared amplitude
+        rho2_2 = rho2_1 + xi_1_t*xi_1_t
+        # (ups-K14) amplitude, with the sign of the branch
+        root_2 = branch_2*sqrt(rho2_2)
+        # (ups-K15) cosine of the angle of joint 2 from its reference direction
+        inv_root_2 = 1.0/root_2
+        # (ups-V5) reciprocal vector 1
+        axis_x_x = S_x*inv_root_2
+        axis_x_y = S_y*inv_root_2
+        axis_x_z = S_z*inv_root_2
+        # (M8) moment of the column's unit force about the platform origin
+        H_a_3_x = axis_x_z*q_in_base_y - axis_x_y*q_in_base_z
+        H_a_3_y = axis_x_x*q_in_base_z - axis_x_z*q_in_base_x
+        H_a_3_z = axis_x_y*q_in_base_x - axis_x_x*q_in_base_y
+        # (C2) rms distance of the platform points from their centroid
+        spread_t_2 = b_c_x - ups_platform_point_x
+        spread_t_3 = b_c_y - ups_platform_point_y
+        spread_t_4 = b_c_z - ups_platform_point_z
+        spread_t_5 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3 + spread_t_4*spread_t_4
+        # (ups-K4) squared amplitude
+        pivot_size = abs(rho2_1)
+        # (ups-K13) squared amplitude
+        pivot_size_2 = abs(rho2_2)
+        # (ups-V5) reciprocal vector 1
+        pivot_size_3 = abs(root_1)
+        pivot_size_4 = abs(root_2)
+        # (ups-N21) force at the connection point that balances the leg's inertia and weight along all freedoms
+        least_pivots = (
+        least(least(least(1.25*sqrt(pivot_size), 1.25*sqrt(pivot_size_2)), 1.25*pivot_size_3),
+            1.25*pivot_size_4)
+        )
+        clear = (
+        clear & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) >
+            _TOLERANCE * 0.8) & (abs(root_2) > _TOLERANCE * 0.8))
+        )
+        sums = m.added(sums, leg, (
+        spread_t_5,
+        ))
+        out_H[[0, 1, 2, 3, 4, 5][leg]] = axis_x_x
+        out_H[[6, 7, 8, 9, 10, 11][leg]] = axis_x_y
+        out_H[[12, 13, 14, 15, 16, 17][leg]] = axis_x_z
+        out_H[[18, 19, 20, 21, 22, 23][leg]] = H_a_3_x
+        out_H[[24, 25, 26, 27, 28, 29][leg]] = H_a_3_y
+        out_H[[30, 31, 32, 33, 34, 35][leg]] = H_a_3_z
+        out_pivots[[0, 1, 2, 3, 4, 5][leg]] = least_pivots
+    total_ups, = sums
     # (C2) rms distance of the platform points from their centroid
     spread = spread_t*sqrt(total_ups)
-    ok = True
-    return (ok, (spread,),)
+    out_lengths[0] = spread
+    return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
 
 
-_DYNAMICS = _Plan(
-    inputs=('X', 'V'),
-arrays=(('M', (6, 6)), ('Z', (6,)), ('H', (6, 6))),
-    before=_Part(
-        _dynamics_before,
-('J_star_t_22', 'J_star_t_24', 'J_star_xx', 'J_star_xy', 'J_star_xz', 'J_star_yy', 'J_star_yz',
-        'J_star_zz', 'Z_p_t', 'Z_p_t_2', 'Z_p_t_3', 'gravity_x', 'gravity_y', 'gravity_z',
-        'h_star_x', 'h_star_y', 'h_star_z'),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _dynamics_ups,
-            "ups",
-(),
-('J_group_2_xx', 'J_group_2_xy', 'J_group_2_xz', 'J_group_2_yy', 'J_group_2_yz', 'J_group_2_zz',
-            'Sigma_2_xx', 'Sigma_2_yy', 'Sigma_2_zz', 'branch_1', 'branch_2', 'g_r0_x', 'g_r0_y',
-            'g_r0_z', 'h_2_x', 'h_2_y', 'h_2_z', 'h_3_x', 'h_3_y', 'h_3_z', 'ups_base_frame_xx',
-            'ups_base_frame_xy', 'ups_base_frame_xz', 'ups_base_frame_yx', 'ups_base_frame_yy',
-            'ups_base_frame_yz', 'ups_base_frame_zx', 'ups_base_frame_zy', 'ups_base_frame_zz',
-            'ups_base_point_x', 'ups_base_point_y', 'ups_base_point_z', 'ups_platform_point_x',
-            'ups_platform_point_y', 'ups_platform_point_z'),
-(),
-(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 27, 28, 29, 30, 31, 32),
-            27,
-            (
-(2, (0, 1, 2, 3, 4, 5)),
-(2, (6, 7, 8, 9, 10, 11)),
-(2, (12, 13, 14, 15, 16, 17)),
-(2, (18, 19, 20, 21, 22, 23)),
-(2, (24, 25, 26, 27, 28, 29)),
-(2, (30, 31, 32, 33, 34, 35)),
-            ),
-        ),
-    ),
-    after=_Part(
-        _dynamics_after,
-('m_star',),
-(18, 19, 20, 21, 22, 23, 24, 25, 26, 33, 34, 35, 36, 37, 38),
-        (
-(0, 0), (0, 1), (0, 6), (0, 2), (0, 12), (0, 7), (0, 8), (0, 13), (0, 14), (0, 3), (0, 18), (0,
-            4), (0, 24), (0, 5), (0, 30), (0, 9), (0, 19), (0, 10), (0, 25), (0, 11), (0, 31), (0,
-            15), (0, 20), (0, 16), (0, 26), (0, 17), (0, 32), (0, 21), (0, 22), (0, 27), (0, 23),
-            (0, 33), (0, 28), (0, 29), (0, 34), (0, 35), (1, 0), (1, 1), (1, 2), (1, 3), (1, 4),
-            (1, 5),
-        ),
-    ),
-)
-_M = _Plan(
-    inputs=('X',),
-arrays=(('M', (6, 6)),),
-    before=_Part(
-        _M_before,
-('J_star_t_22', 'J_star_t_24', 'J_star_xx', 'J_star_xy', 'J_star_xz', 'J_star_yz', 'h_star_x',
-        'h_star_y', 'h_star_z'),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _M_ups,
-            "ups",
-(),
-('J_group_2_xx', 'J_group_2_xy', 'J_group_2_xz', 'J_group_2_yy', 'J_group_2_yz', 'J_group_2_zz',
-            'branch_1', 'branch_2', 'h_3_x', 'h_3_y', 'h_3_z', 'ups_base_frame_xx',
-            'ups_base_frame_xy', 'ups_base_frame_xz', 'ups_base_frame_yx', 'ups_base_frame_yy',
-            'ups_base_frame_yz', 'ups_base_frame_zx', 'ups_base_frame_zy', 'ups_base_frame_zz',
-            'ups_base_point_x', 'ups_base_point_y', 'ups_base_point_z', 'ups_platform_point_x',
-            'ups_platform_point_y', 'ups_platform_point_z'),
-(),
-(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
-            21,
-            (
-            ),
-        ),
-    ),
-    after=_Part(
-        _M_after,
-('m_star',),
-(12, 13, 14, 15, 16, 17, 18, 19, 20),
-        (
-(0, 0), (0, 1), (0, 6), (0, 2), (0, 12), (0, 7), (0, 8), (0, 13), (0, 14), (0, 3), (0, 18), (0,
-            4), (0, 24), (0, 5), (0, 30), (0, 9), (0, 19), (0, 10), (0, 25), (0, 11), (0, 31), (0,
-            15), (0, 20), (0, 16), (0, 26), (0, 17), (0, 32), (0, 21), (0, 22), (0, 27), (0, 23),
-            (0, 33), (0, 28), (0, 29), (0, 34), (0, 35),
-        ),
-    ),
-)
-_Z = _Plan(
-    inputs=('X', 'V'),
-arrays=(('Z', (6,)),),
-    before=_Part(
-        _Z_before,
-('J_star_xx', 'J_star_xy', 'J_star_xz', 'J_star_yy', 'J_star_yz', 'J_star_zz', 'Z_p_t', 'Z_p_t_2',
-        'Z_p_t_3', 'gravity_x', 'gravity_y', 'gravity_z', 'h_star_x', 'h_star_y', 'h_star_z'),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _Z_ups,
-            "ups",
-(),
-('J_group_2_xy', 'J_group_2_xz', 'J_group_2_yz', 'Sigma_2_xx', 'Sigma_2_yy', 'Sigma_2_zz',
-            'branch_1', 'branch_2', 'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_2_x', 'h_2_y', 'h_2_z',
-            'h_3_x', 'h_3_y', 'h_3_z', 'ups_base_frame_xx', 'ups_base_frame_xy',
-            'ups_base_frame_xz', 'ups_base_frame_yx', 'ups_base_frame_yy', 'ups_base_frame_yz',
-            'ups_base_frame_zx', 'ups_base_frame_zy', 'ups_base_frame_zz', 'ups_base_point_x',
-            'ups_base_point_y', 'ups_base_point_z', 'ups_platform_point_x',
-            'ups_platform_point_y', 'ups_platform_point_z'),
-(),
-(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23),
-            6,
-            (
-            ),
-        ),
-    ),
-    after=_Part(
-        _Z_after,
-(),
-(24, 25, 26, 27, 28, 29),
-        (
-(0, 0), (0, 1), (0, 2), (0, 3), (0, 4), (0, 5),
-        ),
-    ),
-)
-_H = _Plan(
-    inputs=('X',),
-arrays=(('H', (6, 6)),),
-    before=_Part(
-        _H_before,
-(),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _H_ups,
-            "ups",
-(),
-('branch_2', 'ups_base_frame_xx', 'ups_base_frame_xy', 'ups_base_frame_xz', 'ups_base_frame_yx',
-            'ups_base_frame_yy', 'ups_base_frame_yz', 'ups_base_frame_zx', 'ups_base_frame_zy',
-            'ups_base_frame_zz', 'ups_base_point_x', 'ups_base_point_y', 'ups_base_point_z',
-            'ups_platform_point_x', 'ups_platform_point_y', 'ups_platform_point_z'),
-(),
-(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
-            0,
-            (
-(0, (0, 1, 2, 3, 4, 5)),
-(0, (6, 7, 8, 9, 10, 11)),
-(0, (12, 13, 14, 15, 16, 17)),
-(0, (18, 19, 20, 21, 22, 23)),
-(0, (24, 25, 26, 27, 28, 29)),
-(0, (30, 31, 32, 33, 34, 35)),
-            ),
-        ),
-    ),
-)
-_REQUIRED = _Plan(
-    inputs=('X', 'V', 'A'),
-arrays=(('required', (6,)), ('H', (6, 6))),
-    before=_Part(
-        _required_before,
-('J_star_xx', 'J_star_xy', 'J_star_xz', 'J_star_yy', 'J_star_yz', 'J_star_zz', 'gravity_x',
-        'gravity_y', 'gravity_z', 'h_star_x', 'h_star_y', 'h_star_z', 'm_star'),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _required_ups,
-            "ups",
-(),
-('J_group_2_xy', 'J_group_2_xz', 'J_group_2_yz', 'Sigma_2_xx', 'Sigma_2_yy', 'Sigma_2_zz',
-            'branch_1', 'branch_2', 'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_2_x', 'h_2_y', 'h_2_z',
-            'h_3_x', 'h_3_y', 'h_3_z', 'ups_base_frame_xx', 'ups_base_frame_xy',
-            'ups_base_frame_xz', 'ups_base_frame_yx', 'ups_base_frame_yy', 'ups_base_frame_yz',
-            'ups_base_frame_zx', 'ups_base_frame_zy', 'ups_base_frame_zz', 'ups_base_point_x',
-            'ups_base_point_y', 'ups_base_point_z', 'ups_platform_point_x',
-            'ups_platform_point_y', 'ups_platform_point_z'),
-(),
-(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23),
-            6,
-            (
-(1, (0, 1, 2, 3, 4, 5)),
-(1, (6, 7, 8, 9, 10, 11)),
-(1, (12, 13, 14, 15, 16, 17)),
-(1, (18, 19, 20, 21, 22, 23)),
-(1, (24, 25, 26, 27, 28, 29)),
-(1, (30, 31, 32, 33, 34, 35)),
-            ),
-        ),
-    ),
-    after=_Part(
-        _required_after,
-(),
-(24, 25, 26, 27, 28, 29),
-        (
-(0, 0), (0, 1), (0, 2), (0, 3), (0, 4), (0, 5),
-        ),
-    ),
-)
-_INVERSE_KINEMATICS = _Plan(
-    inputs=('X',),
-arrays=(('q', (18,)),),
-    before=_Part(
-        _inverse_kinematics_before,
-(),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _inverse_kinematics_ups,
-            "ups",
-(),
-('branch_1', 'branch_2', 'ups_base_frame_xx', 'ups_base_frame_xy', 'ups_base_frame_xz',
-            'ups_base_frame_yx', 'ups_base_frame_yy', 'ups_base_frame_yz', 'ups_base_frame_zx',
-            'ups_base_frame_zy', 'ups_base_frame_zz', 'ups_base_point_x', 'ups_base_point_y',
-            'ups_base_point_z', 'ups_platform_point_x', 'ups_platform_point_y',
-            'ups_platform_point_z'),
-(),
-(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
-            0,
-            (
-(0, (0, 3, 6, 9, 12, 15)),
-(0, (1, 4, 7, 10, 13, 16)),
-(0, (2, 5, 8, 11, 14, 17)),
-            ),
-        ),
-    ),
-)
-_JOINT_RATES = _Plan(
-    inputs=('X', 'V'),
-arrays=(('qd', (18,)),),
-    before=_Part(
-        _joint_rates_before,
-(),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _joint_rates_ups,
-            "ups",
-(),
-('branch_1', 'branch_2', 'ups_base_frame_xx', 'ups_base_frame_xy', 'ups_base_frame_xz',
-            'ups_base_frame_yx', 'ups_base_frame_yy', 'ups_base_frame_yz', 'ups_base_frame_zx',
-            'ups_base_frame_zy', 'ups_base_frame_zz', 'ups_base_point_x', 'ups_base_point_y',
-            'ups_base_point_z', 'ups_platform_point_x', 'ups_platform_point_y',
-            'ups_platform_point_z'),
-(),
-(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17),
-            0,
-            (
-(0, (0, 3, 6, 9, 12, 15)),
-(0, (1, 4, 7, 10, 13, 16)),
-(0, (2, 5, 8, 11, 14, 17)),
-            ),
-        ),
-    ),
-)
-_JOINT_ACCELERATIONS = _Plan(
-    inputs=('X', 'V', 'A'),
-arrays=(('qdd', (18,)),),
-    before=_Part(
-        _joint_accelerations_before,
-(),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _joint_accelerations_ups,
-            "ups",
-(),
-('branch_1', 'branch_2', 'ups_base_frame_xx', 'ups_base_frame_xy', 'ups_base_frame_xz',
-            'ups_base_frame_yx', 'ups_base_frame_yy', 'ups_base_frame_yz', 'ups_base_frame_zx',
-            'ups_base_frame_zy', 'ups_base_frame_zz', 'ups_base_point_x', 'ups_base_point_y',
-            'ups_base_point_z', 'ups_platform_point_x', 'ups_platform_point_y',
-            'ups_platform_point_z'),
-(),
-(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23),
-            0,
-            (
-(0, (0, 3, 6, 9, 12, 15)),
-(0, (1, 4, 7, 10, 13, 16)),
-(0, (2, 5, 8, 11, 14, 17)),
-            ),
-        ),
-    ),
-)
-_LEGS_FORCE = _Plan(
-    inputs=('X', 'V', 'A'),
-arrays=(('leg_force', (6, 3)), ('drive', (6, 3))),
-    before=_Part(
-        _legs_before,
-(),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _legs_ups,
-            "ups",
-(),
-('J_group_2_xy', 'J_group_2_xz', 'J_group_2_yz', 'Sigma_2_xx', 'Sigma_2_yy', 'Sigma_2_zz',
-            'branch_1', 'branch_2', 'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_2_x', 'h_2_y', 'h_2_z',
-            'h_3_x', 'h_3_y', 'h_3_z', 'ups_base_frame_xx', 'ups_base_frame_xy',
-            'ups_base_frame_xz', 'ups_base_frame_yx', 'ups_base_frame_yy', 'ups_base_frame_yz',
-            'ups_base_frame_zx', 'ups_base_frame_zy', 'ups_base_frame_zz', 'ups_base_point_x',
-            'ups_base_point_y', 'ups_base_point_z', 'ups_link3_mass', 'ups_platform_point_x',
-            'ups_platform_point_y', 'ups_platform_point_z'),
-(),
-(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23),
-            0,
-            (
-(0, (0, 3, 6, 9, 12, 15)),
-(0, (1, 4, 7, 10, 13, 16)),
-(0, (2, 5, 8, 11, 14, 17)),
-(1, (0, 3, 6, 9, 12, 15)),
-(1, (1, 4, 7, 10, 13, 16)),
-(1, (2, 5, 8, 11, 14, 17)),
-            ),
-        ),
-    ),
-)
-_POTENTIAL = _Plan(
-    inputs=('X',),
-arrays=(('potential', (1,)),),
-    before=_Part(
-        _potential_before,
-('gravity_x', 'gravity_y', 'gravity_z', 'h_star_x', 'h_star_y', 'h_star_z', 'm_star'),
-        None,
-        (),
-    ),
-    legs=(
-        _LegPart(
-            _potential_ups,
-            "ups",
-(),
-('b_r0_x', 'b_r0_y', 'b_r0_z', 'branch_1', 'branch_2', 'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_2_x',
-            'h_2_y', 'h_2_z', 'h_3_x', 'h_3_y', 'h_3_z', 'ups_base_frame_xx', 'ups_base_frame_xy',
-            'ups_base_frame_xz', 'ups_base_frame_yx', 'ups_base_frame_yy', 'ups_base_frame_yz',
-            'ups_base_frame_zx', 'ups_base_frame_zy', 'ups_base_frame_zz', 'ups_base_point_x',
-            'ups_base_point_y', 'ups_base_point_z', 'ups_link2_mass', 'ups_platform_point_x',
-            'ups_platform_point_y', 'ups_platform_point_z'),
-(),
-(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
-            1,
-            (
-            ),
-        ),
-    ),
-    after=_Part(
-        _potential_after,
-(),
-(12,),
-        ((0, 0),),
-    ),
-)
-_CONDITION = _Plan(
-    inputs=('X',),
-arrays=(('H', (6, 6)), ('lengths', (2,)), ('pivots', (6,)), ('reach', (6,))),
-    before=_Part(
-        _condition_before,
-('legs_size',),
-        None,
-        ((1, 1),),
-    ),
-    legs=(
-        _LegPart(
-            _condition_ups,
-            "ups",
-('b_c_x', 'b_c_y', 'b_c_z'),
-('branch_1', 'branch_2', 'ups_base_frame_xx', 'ups_base_frame_xy', 'ups_base_frame_xz',
-            'ups_base_frame_yx', 'ups_base_frame_yy', 'ups_base_frame_yz', 'ups_base_frame_zx',
-            'ups_base_frame_zy', 'ups_base_frame_zz', 'ups_base_point_x', 'ups_base_point_y',
-            'ups_base_point_z', 'ups_platform_point_x', 'ups_platform_point_y',
-            'ups_platform_point_z'),
-(),
-(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
-            1,
-            (
-(0, (0, 1, 2, 3, 4, 5)),
-(0, (6, 7, 8, 9, 10, 11)),
-(0, (12, 13, 14, 15, 16, 17)),
-(0, (18, 19, 20, 21, 22, 23)),
-(0, (24, 25, 26, 27, 28, 29)),
-(0, (30, 31, 32, 33, 34, 35)),
-(2, (0, 1, 2, 3, 4, 5)),
-            ),
-        ),
-    ),
-    after=_Part(
-        _condition_after,
-('spread_t',),
-(),
-        ((1, 0),),
-    ),
-)
+_Q = 3  # where a quaternion begins in X
 _DEFAULT = Parameters()
 
 
-_PIVOT = 1.8e-12  # a pivot below this fraction of its row counts as zero (epsilon^(3/4))
-_CLEARLY = 2.0  # rows change places only for a pivot that is larger by this factor
+def _steps_M(m, X):
+    M_of_M, = m.run(_run_M, ((6, 6),), X)
+    return (M_of_M,)
 
 
-def _solve(a, b):
-    """Solve a x = b, a (..., n, n), b (..., n): rows scaled, partial pivoting; NaN if singular."""
-    lead = np.broadcast_shapes(a.shape[:-2], b.shape[:-1])
-    n = a.shape[-1]
-    count = int(np.prod(lead, dtype=int))
-    a = np.broadcast_to(a, (*lead, n, n)).reshape(count, n, n).copy()
-    b = np.broadcast_to(b, (*lead, n)).reshape(count, n).copy()
-    if count <= _FEW:
-        rows = [_solve_one(matrix, right) for matrix, right in zip(a.tolist(), b.tolist())]
-        x = np.array(rows).reshape(count, n)
-    else:
-        with np.errstate(all="ignore"):
-            x = _solve_block(a, b)
-    x[~np.isfinite(x).all(axis=1)] = np.nan
-    return x.reshape(*lead, n)
+def _steps_Z(m, X, V):
+    Z_of_Z, = m.run(_run_Z, ((6,),), X, V)
+    return (Z_of_Z,)
 
 
-def _solve_one(a, b):
-    """The same for one system of nested lists."""
-    n = len(b)
-    failure = [np.nan] * n
-    for i, row in enumerate(a):
-        size = max(map(abs, row), default=0.0)
-        if not 0.0 < size < np.inf:
-            return failure
-        a[i] = [v / size for v in row] + [b[i] / size]
-    for k in range(n):
-        best = max(range(k, n), key=lambda i: abs(a[i][k]))
-        if abs(a[best][k]) > _CLEARLY * abs(a[k][k]):
-            a[k], a[best] = a[best], a[k]
-        if not abs(a[k][k]) > _PIVOT:
-            return failure
-        head = a[k]
-        for i in range(k + 1, n):
-            factor = a[i][k] / head[k]
-            a[i] = [v - factor * h for v, h in zip(a[i], head)]
-    x = [0.0] * n
-    for k in reversed(range(n)):
-        x[k] = (a[k][n] - sum(a[k][j] * x[j] for j in range(k + 1, n))) / a[k][k]
-    return x
+def _steps_H(m, X):
+    H_of_H, = m.run(_run_H, ((6, 6),), X)
+    return (H_of_H,)
 
 
-def _solve_block(a, b):
-    """The same for many systems, (states, n, n) and (states, n)."""
-    states, n = b.shape
-    size = np.max(np.abs(a), axis=2, keepdims=True)
-    good = np.all((size > 0.0) & np.isfinite(size), axis=(1, 2))
-    a = np.concatenate((a, b[:, :, None]), axis=2) / size
-    which = np.arange(states)
-    for k in range(n):
-        column = np.abs(a[:, k:, k])
-        best = np.argmax(column, axis=1)
-        best = k + np.where(column[which, best] > _CLEARLY * column[:, 0], best, 0)
-        a[which, k], a[which, best] = a[which, best], a[which, k].copy()
-        good &= np.abs(a[:, k, k]) > _PIVOT
-        factor = a[:, k + 1 :, k] / a[:, k, k, None]
-        a[:, k + 1 :] -= factor[:, :, None] * a[:, k, None]
-    x = np.zeros((states, n))
-    for k in reversed(range(n)):
-        x[:, k] = (a[:, k, n] - np.sum(a[:, k, k + 1 : n] * x[:, k + 1 :], axis=1)) / a[:, k, k]
-    x[~good] = np.nan
-    return x
+def _steps_inverse_kinematics(m, X):
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((18,),), X)
+    return (q_of_inverse_kinematics,)
+
+
+def _steps_joint_rates(m, X, V):
+    qd_of_joint_rates, = m.run(_run_joint_rates, ((18,),), X, V)
+    return (qd_of_joint_rates,)
+
+
+def _steps_joint_accelerations(m, X, V, A):
+    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ((18,),), X, V, A)
+    return (qdd_of_joint_accelerations,)
+
+
+def _steps_dynamics(m, X, V):
+    (
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
+    ) = m.run(_run_dynamics, ((6, 6), (6,), (6, 6)), X, V)
+    return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
+
+
+def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
+    required_of_required, H_of_required = m.run(_run_required, ((6,), (6, 6)), X, V, A)
+    extend_1 = wrench
+    subtract_2 = required_of_required - extend_1
+    solve_3 = _solve(H_of_required, subtract_2)
+    return (solve_3,)
+
+
+def _steps_forward_dynamics(m, X, V, tau, wrench):
+    (
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
+    ) = m.run(_run_dynamics, ((6, 6), (6,), (6, 6)), X, V)
+    times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
+    extend_2 = wrench
+    add_3 = times_1 + extend_2
+    subtract_4 = add_3 - Z_of_dynamics
+    solve_5 = _solve(M_of_dynamics, subtract_4)
+    return (solve_5,)
+
+
+def _steps_complete_acceleration(m, X, V, A, wrench):
+    same_1 = A
+    return (same_1,)
+
+
+def _steps_leg_reactions(m, X, V, A, wrench):
+    required_of_required, H_of_required = m.run(_run_required, ((6,), (6, 6)), X, V, A)
+    extend_1 = wrench
+    subtract_2 = required_of_required - extend_1
+    solve_3 = _solve(H_of_required, subtract_2)
+    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ((6, 3), (6, 3)), X, V, A)
+    add_forces_4 = _with_forces(leg_force_of_legs, solve_3, drive_of_legs, [0, 1, 2, 3, 4, 5])
+    return (add_forces_4,)
+
+
+def _steps_energy(m, X, V):
+    M_of_M, = m.run(_run_M, ((6, 6),), X)
+    potential_of_potential, = m.run(_run_potential, ((1,),), X)
+    half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
+    entry_2 = potential_of_potential[0]
+    return (half_form_1, entry_2,)
+
+
+def _steps_null_space(m, X):
+    H_of_H, = m.run(_run_H, ((6, 6),), X)
+    null_basis_1 = _null_basis(H_of_H, 6)
+    return (null_basis_1,)
+
+
+def _steps_condition(m, X, length):
+    (
+    H_of_condition, lengths_of_condition, pivots_of_condition, reach_of_condition,
+    ) = m.run(_run_condition, ((6, 6), (2,), (6,), (6,)), X)
+    choose_length_1 = _chosen_length(lengths_of_condition, length)
+    divide_rows_2 = _rows_divided(H_of_condition, choose_length_1, [3, 4, 5])
+    singular_values_3 = _singular_values(divide_rows_2)
+    return (singular_values_3, pivots_of_condition,)
+
+
+def _steps_mismatch(m, X, q_actuated):
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((18,),), X)
+    take_1 = q_of_inverse_kinematics[[2, 5, 8, 11, 14, 17]]
+    subtract_2 = q_actuated - take_1
+    return (subtract_2,)
+
+
+def _steps_slope(m, X):
+    H_of_H, = m.run(_run_H, ((6, 6),), X)
+    return (H_of_H,)
+
+
+def _steps_forward_kinematics(m, q_actuated, X0):
+    X_found = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    return (X_found,)
+
+
+def _steps_rotation(m, X):
+    take_1 = X[3:7]
+    rotation_of_quaternion_2 = _rotation_of_quaternion(take_1)
+    return (rotation_of_quaternion_2,)
+
+
+def _steps_pose(m, t, R):
+    quaternion_of_rotation_1 = _quaternion_of_rotation(R)
+    join_2 = np.concatenate((t, quaternion_of_rotation_1))
+    extend_3 = join_2
+    return (extend_3,)
+
+
+def _steps_X_dot(m, X, V):
+    take_1 = V[3:6]
+    take_2 = X[3:7]
+    quaternion_rate_3 = _quaternion_rate(take_2, take_1)
+    take_4 = V[0:3]
+    join_5 = np.concatenate((take_4, quaternion_rate_3))
+    return (join_5,)
+
+
+def _steps_pose_from_rpy(m, t, rpy):
+    quaternion_of_rpy_1 = _quaternion_of_rpy(rpy)
+    join_2 = np.concatenate((t, quaternion_of_rpy_1))
+    extend_3 = join_2
+    return (extend_3,)
 
 
 def M(X, p=None):
-    """Inertia matrix (..., NV, NV) at X (..., NQ)."""
-    return _evaluate(_M, p, X=_vector("M", "X", X, NQ))[0]
+    """Inertia matrix M.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        M: inertia matrix M (..., NV, NV).
+    """
+    return _call(
+        "M", _steps_M, p,
+        ("X", X, (NQ,)),
+    )
 
 
 def Z(X, V, p=None):
-    """Velocity and gravity terms (..., NV) at X (..., NQ), V (..., NV)."""
-    return _evaluate(_Z, p, X=_vector("Z", "X", X, NQ), V=_vector("Z", "V", V, NV))[0]
+    """Velocity and gravity terms Z.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        Z: velocity and gravity terms Z (..., NV).
+    """
+    return _call(
+        "Z", _steps_Z, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+    )
 
 
 def H(X, p=None):
-    """Force transformation (..., NV, NU): actuators to task space."""
-    return _evaluate(_H, p, X=_vector("H", "X", X, NQ))[0]
+    """Force transformation H: actuators to task space.
 
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
 
-def dynamics(X, V, p=None):
-    """M, Z and H together, sharing the work."""
-    X, V = _vector("dynamics", "X", X, NQ), _vector("dynamics", "V", V, NV)
-    return tuple(_evaluate(_DYNAMICS, p, X=X, V=V)[:3])
-
-
-def _external(function, wrench):
-    """The wrench (..., NW) as a generalised force (..., NV); extra coordinates get none."""
-    if wrench is None:
-        return np.zeros(NV)
-    wrench = _vector(function, "wrench", wrench, NW)
-    return np.concatenate((wrench, np.zeros((*wrench.shape[:-1], NV - NW))), axis=-1)
-
-
-def _together(failed, *arrays):
-    """The arrays with NaN in every row in which one of them failed."""
-    for array, axes in arrays:
-        array[np.broadcast_to(failed, array.shape[: array.ndim - axes])] = np.nan
-    return [array for array, _ in arrays]
-
-
-def _known(array, axes, *inputs):
-    """The array, NaN in every row in which one of its entries or an input is not finite."""
-    failed = ~np.isfinite(array).all(axis=tuple(range(-axes, 0)))
-    for value in inputs:
-        failed = failed | ~np.isfinite(value).all(axis=-1)
-    return _together(failed, (array, axes))[0]
-
-
-def _weights(weights):
-    """The weights (..., NU) of the drives."""
-    if weights is None:
-        return np.ones(NU)
-    weights = _vector("inverse_dynamics", "weights", weights, NU)
-    if not np.all((weights > 0.0) & (weights < np.inf)):
-        raise ValueError("inverse_dynamics: weights must be positive and finite")
-    return weights
-
-
-def inverse_dynamics(X, V, A, p=None, *, wrench=None, weights=None):
-    """Actuator forces tau (..., NU) for the acceleration A (..., NV), by Eq. 3.
-
-    The wrench (..., NW) acts on the platform. weights: unused, as the drives are not redundant.
+    Returns:
+        H: force transformation H: actuators to task space (..., NV, NU).
     """
-    X, V = _vector("inverse_dynamics", "X", X, NQ), _vector("inverse_dynamics", "V", V, NV)
-    A = _vector("inverse_dynamics", "A", A, NV)
-    weights, external = _weights(weights), _external("inverse_dynamics", wrench)
-    _lead(X=X, V=V, A=A, wrench=external, weights=weights)
-    required, matrix, *rest = _evaluate(_REQUIRED, p, X=X, V=V, A=A)
-    force = required - external
-    return _drive_forces(matrix, rest[0] if rest else None, force, weights)
-
-
-def forward_dynamics(X, V, tau, p=None, *, wrench=None):
-    """Acceleration A (..., NV) under actuator forces tau (..., NU) and the wrench."""
-    X, V = _vector("forward_dynamics", "X", X, NQ), _vector("forward_dynamics", "V", V, NV)
-    tau, external = _vector("forward_dynamics", "tau", tau, NU), _external("forward_dynamics", wrench)
-    _lead(X=X, V=V, tau=tau, wrench=external)
-    inertia, bias, matrix, *rest = _evaluate(_DYNAMICS, p, X=X, V=V)
-    with np.errstate(all="ignore"):
-        force = (matrix @ tau[..., None])[..., 0] + external - bias
-    return _solve(inertia, force)
-
-
-def complete_acceleration(X, V, A, p=None, *, wrench=None):
-    """A: there are no passive extra coordinates, whose accelerations would have to follow."""
-    X, V = _vector("complete_acceleration", "X", X, NQ), _vector("complete_acceleration", "V", V, NV)
-    A, external = _vector("complete_acceleration", "A", A, NV), _external("complete_acceleration", wrench)
-    p, lead = _given(p), _lead(X=X, V=V, A=A, wrench=external)
-    return _known(np.array(np.broadcast_to(A, (*lead, NV))), 1)
-
-
-def _drive_forces(matrix, directions, force, weights):
-    """tau with H tau = force."""
-    del directions, weights
-    rows = list(_DRIVEN_ROWS)
-    tau = _solve(matrix[..., rows, :], force[..., rows])
-    return _known(tau, 1, force)
-
-
-def null_space(X, p=None):
-    """Basis (..., NU, 0) of the tau with H tau = 0: empty, the drives are not redundant."""
-    X = _vector("null_space", "X", X, NQ)
-    _given(p)
-    return np.zeros((*X.shape[:-1], NU, 0))
-
-
-_MOMENT_ROWS = (3, 4, 5)  # rows of H that are moments
-
-
-def condition(X, p=None, *, length=None):
-    """How far a pose is from singularities: sigma (..., 6), legs (..., 6), status (...).
-
-    sigma: singular values of H in descending order, moment rows divided by `length` [m], as a
-    rule the rms distance of the platform points from their centroid (where they coincide, the
-    rms size of the legs).  legs: for every leg the least tested pivot as a fraction of its scale;
-    a leg is refused at 1.5e-8.  status: 0 OK, 1 unreachable, 2 singular leg, 3 invalid, 4 not
-    converged, as in C; sigma and legs are NaN where it is not 0.
-    """
-    return _condition("condition", X, p, length)
-
-
-def _condition(name, X, p, length, columns=NU):
-    """sigma of the first columns of H, margins of the legs, status codes."""
-    X = _vector(name, "X", X, NQ)
-    p = _given(p)
-    if length is not None:
-        size = _numbers(name, "length", length)
-        if size.shape or not 0.0 < size < np.inf:
-            raise ValueError(f"{name}: length is {length!r}, expected a positive number")
-    lead = X.shape[:-1]
-    vectors = {"X": X.reshape(-1, NQ)}
-    states = len(vectors["X"])
-    made = [np.zeros((states, int(np.prod(shape, dtype=int)))) for _, shape in _CONDITION.arrays]
-    flat = [np.ascontiguousarray(vectors[k].T) for k in _CONDITION.inputs]
-    with np.errstate(all="ignore"):
-        given = _CONDITION.before.function(_CONDITION.constants(p)[0], *flat, _Arrays)[0]
-        _run_block(_CONDITION, p, flat, made)
-        found = {n: v.reshape(states, *s) for v, (n, s) in zip(made, _CONDITION.arrays)}
-        spread, legs_size = found["lengths"].T
-        if length is None:
-            length = np.where(spread > 1e-9 * legs_size, spread, legs_size)[:, None, None]
-        matrix = found["H"]
-        matrix[:, list(_MOMENT_ROWS)] /= length
-        finite = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(found["pivots"]).all(axis=1)
-        status = np.select(
-            [
-                ~(np.isfinite(vectors["X"]).all(axis=1) & given),
-                ~(found["reach"] >= 0.0).all(axis=1),
-                ~(found["pivots"] > _TOLERANCE).all(axis=1),
-                ~finite,
-            ],
-            [3, 1, 2, 3],
-            0,
-        )
-    good = (status == 0)[:, None]
-    sigma = np.linalg.svd(np.where(good[..., None], matrix[..., :columns], 0.0), compute_uv=False)
-    sigma, legs = np.where(good, sigma, np.nan), np.where(good, found["pivots"], np.nan)
-    return (
-        sigma.reshape(*lead, sigma.shape[1]), legs.reshape(*lead, legs.shape[1]),
-        status.reshape(lead)[()],
+    return _call(
+        "H", _steps_H, p,
+        ("X", X, (NQ,)),
     )
 
 
 def inverse_kinematics(X, p=None):
-    """Displacements q (..., NJ) of all joints at X, on the assembly branch of home."""
-    return _evaluate(_INVERSE_KINEMATICS, p, X=_vector("inverse_kinematics", "X", X, NQ))[0]
+    """Displacements q of all joints.
+
+    They are those of the assembly branch of home.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        q: displacements q of all joints (..., NJ).
+    """
+    return _call(
+        "inverse_kinematics", _steps_inverse_kinematics, p,
+        ("X", X, (NQ,)),
+    )
 
 
 def joint_rates(X, V, p=None):
-    """Rates of all joints (..., NJ)."""
-    X, V = _vector("joint_rates", "X", X, NQ), _vector("joint_rates", "V", V, NV)
-    return _evaluate(_JOINT_RATES, p, X=X, V=V)[0]
+    """Rates of all joints.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        qd: rates of all joints (..., NJ).
+    """
+    return _call(
+        "joint_rates", _steps_joint_rates, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+    )
 
 
 def joint_accelerations(X, V, A, p=None):
-    """Accelerations of all joints (..., NJ)."""
-    X, V = _vector("joint_accelerations", "X", X, NQ), _vector("joint_accelerations", "V", V, NV)
-    return _evaluate(
-        _JOINT_ACCELERATIONS, p, X=X, V=V, A=_vector("joint_accelerations", "A", A, NV))[0]
+    """Accelerations of all joints.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        A: acceleration (..., NV).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        qdd: accelerations of all joints (..., NJ).
+    """
+    return _call(
+        "joint_accelerations", _steps_joint_accelerations, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+        ("A", A, (NV,)),
+    )
+
+
+def dynamics(X, V, p=None):
+    """M, Z and H together, sharing the work.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        M: inertia matrix (..., NV, NV).
+        Z: velocity and gravity terms (..., NV).
+        H: force transformation (..., NV, NU).
+    """
+    return _call(
+        "dynamics", _steps_dynamics, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+    )
+
+
+def inverse_dynamics(X, V, A, p=None, *, wrench=None, weights=None):
+    """Actuator forces tau for the acceleration A, by Eq. 3.
+
+    The weights are not used, as the actuators are not redundant.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        A: acceleration (..., NV).
+        wrench: external wrench on the platform, by default zero (..., NW).
+        weights: positive weights of the actuator forces: least sum of weights tau^2, by default
+            one (..., NU).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        tau: actuator forces [N or N m] (..., NU).
+    """
+    return _call(
+        "inverse_dynamics", _steps_inverse_dynamics, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+        ("A", A, (NV,)),
+        ("wrench", wrench, (NW,), 0.0),
+        ("weights", weights, (NU,), 1.0, "positive"),
+    )
+
+
+def forward_dynamics(X, V, tau, p=None, *, wrench=None):
+    """Acceleration A under the actuator forces tau and the wrench.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        tau: actuator forces [N or N m] (..., NU).
+        wrench: external wrench on the platform, by default zero (..., NW).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        A: acceleration (..., NV).
+    """
+    return _call(
+        "forward_dynamics", _steps_forward_dynamics, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+        ("tau", tau, (NU,)),
+        ("wrench", wrench, (NW,), 0.0),
+    )
+
+
+def complete_acceleration(X, V, A, p=None, *, wrench=None):
+    """A with the entries of passive extra coordinates that the others allow.
+
+    It is A: there are no passive extra coordinates, whose accelerations would follow.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        A: acceleration (..., NV).
+        wrench: external wrench on the platform, by default zero (..., NW).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        completed: acceleration (..., NV).
+    """
+    return _call(
+        "complete_acceleration", _steps_complete_acceleration, p,
+        ("X", X, (NQ,), None, "unused"),
+        ("V", V, (NV,), None, "unused"),
+        ("A", A, (NV,)),
+        ("wrench", wrench, (NW,), 0.0, "unused"),
+    )
 
 
 def leg_reactions(X, V, A, p=None, *, wrench=None):
-    """Force of each leg on the platform (..., legs, 3) at its platform joint, base axes.
+    """Force of each leg on the platform at its platform joint, base axes.
 
-    The drives give the forces of `inverse_dynamics`.
+    The actuators give the forces of `inverse_dynamics`.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        A: acceleration (..., NV).
+        wrench: external wrench on the platform, by default zero (..., NW).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        forces: leg on platform [N, N m] (..., 6, 3).
     """
-    X, V = _vector("leg_reactions", "X", X, NQ), _vector("leg_reactions", "V", V, NV)
-    A = _vector("leg_reactions", "A", A, NV)
-    wrench = None if wrench is None else _vector("leg_reactions", "wrench", wrench, NW)
-    forces, drive, *directions = _evaluate(_LEGS_FORCE, p, X=X, V=V, A=A)
-    tau = inverse_dynamics(X, V, A, p, wrench=wrench)
-    parts = [(tau, drive, _ACTUATOR_LEGS)]
-    forces = np.array(np.broadcast_to(forces, (*parts[0][0].shape[:-1], *forces.shape[-2:])))
-    for amounts, vectors, legs in parts:
-        for k, leg in enumerate(legs):
-            forces[..., leg, :] += amounts[..., k, None] * vectors[..., k, :]
-    return _together(np.isnan(forces).any(axis=(-1, -2)), (forces, 2))[0]
+    return _call(
+        "leg_reactions", _steps_leg_reactions, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+        ("A", A, (NV,)),
+        ("wrench", wrench, (NW,), 0.0),
+    )
 
 
 def energy(X, V, p=None):
-    """Kinetic and potential energy (...,); the latter is zero at the base origin."""
-    X, V = _vector("energy", "X", X, NQ), _vector("energy", "V", V, NV)
-    _lead(X=X, V=V)
-    inertia = M(X, p)
-    with np.errstate(all="ignore"):
-        kinetic = 0.5 * np.einsum("...i,...ij,...j->...", V, inertia, V)
-    potential = _evaluate(_POTENTIAL, p, X=X)[0][..., 0]
-    known = np.where(np.isfinite(kinetic) & np.isfinite(potential), 0.0, np.nan)
-    return kinetic + known, potential + known
+    """Kinetic and potential energy [J]; the latter is zero at the base origin.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        kinetic: kinetic energy [J] (...,).
+        potential: potential energy [J] (...,).
+    """
+    return _call(
+        "energy", _steps_energy, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+    )
+
+
+def null_space(X, p=None):
+    """Orthonormal basis of the tau with H tau = 0.
+
+    It is empty: the actuators are not redundant.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        basis: columns (..., NU, 0).
+    """
+    return _call(
+        "null_space", _steps_null_space, p,
+        ("X", X, (NQ,)),
+    )
+
+
+def condition(X, p=None, *, length=None):
+    """How far a pose is from singularities: singular values of H, rows of moments divided by a
+    length; for every leg the least tested pivot as a fraction of its scale.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        length: by which rows of moments are divided [m]; by default the rms distance of the
+            platform points from their centroid, or where they coincide the rms size of the legs
+            (...,).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        sigma: singular values, in descending order (..., 6).
+        legs: least pivots; a leg is refused at 1.5e-8 (..., 6).
+        status: 0 OK, 1 unreachable, 2 singular leg, 3 invalid, 4 not converged, as in C (...).
+    """
+    return _call(
+        "condition", _steps_condition, p,
+        ("X", X, (NQ,)),
+        ("length", length, (), 0.0, "positive"),
+        mode=_Judged,
+    )
 
 
 def forward_kinematics(q_actuated, X0, p=None):
-    """X at which the driven joints stand at q_actuated (..., NU), by Gauss-Newton from X0.
+    """X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0.
 
-    Extra coordinates that the drives do not determine stay.  NaN where no X is found.
+    Extra coordinates that actuators do not determine stay.
+
+    Impossible where no pose is found.
+
+    Args:
+        q_actuated: displacements of the actuated joints [m or rad] (..., NU).
+        X0: first guess of the pose (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        X: pose (..., NQ).
     """
-    q_actuated = _vector("forward_kinematics", "q_actuated", q_actuated, NU)
-    X0, p = _vector("forward_kinematics", "X0", X0, NQ), _given(p)
-    lead = _lead(q_actuated=q_actuated, X0=X0)
-    target = np.broadcast_to(q_actuated, (*lead, NU)).reshape(-1, NU)
-    X = np.broadcast_to(X0, (*lead, NQ)).reshape(-1, NQ).copy()
-    found = [_find_pose(q, x, p) for q, x in zip(target, X)]
-    return np.array(found).reshape(*lead, NQ)
-
-
-def _mismatch(q_actuated, X, p):
-    """Residual of driven joints: turns modulo 2 pi."""
-    gap = q_actuated - inverse_kinematics(X, p)[list(_DRIVEN_JOINTS)]
-    gap[list(_TURNING_DRIVES)] = np.remainder(gap[list(_TURNING_DRIVES)] + np.pi, 2 * np.pi) - np.pi
-    return gap
-
-
-def _find_pose(q_actuated, X, p):
-    """Gauss-Newton with step halving for one state."""
-    failure = np.full(NQ, np.nan)
-    if not (np.isfinite(q_actuated).all() and np.isfinite(X).all()):
-        return failure
-    gap = _mismatch(q_actuated, X, p)
-    for _ in range(50):
-        size = np.max(np.abs(gap), initial=0.0)
-        if not np.isfinite(size):
-            return failure
-        if size < 1e-13:
-            break
-        jacobian = H(X, p)
-        if np.isnan(jacobian).any():
-            return failure
-        step = np.linalg.lstsq(jacobian.T, gap, rcond=1e-10)[0]
-        for halving in range(12):
-            trial = _moved(X, step * 0.5**halving)
-            trial_gap = _mismatch(q_actuated, trial, p)
-            if np.max(np.abs(trial_gap)) < size:
-                break
-        else:
-            break
-        X, gap = trial, trial_gap
-    return X if np.max(np.abs(gap), initial=0.0) < 1e-9 else failure
-
-
-def _rotations(R, n, nearest):
-    """Rotation matrices (..., n, n): R as it is, or the nearest; those with NaN stay."""
-    R = np.array(_numbers("pose", "R", R))
-    if R.shape[-2:] != (n, n):
-        raise ValueError(f"pose: R has shape {R.shape}, expected (..., {n}, {n})")
-    known = np.isfinite(R).all(axis=(-1, -2))
-    if nearest:
-        R[known] = _nearest(R[known])
-    if not np.all(_are_rotations(R[known])):
-        raise ValueError(
-            "pose: R is no rotation matrix, with orthonormal rows to 1e-06 and determinant +1;"
-            " nearest=True takes the nearest one")
-    return R
-
-
-def _nearest(R):
-    """The nearest rotations (k, n, n); ValueError where several are."""
-    largest = np.max(np.abs(R), axis=(1, 2), keepdims=True)
-    u, s, vt = np.linalg.svd(R / np.where(largest > 0.0, largest, 1.0))
-    sign = np.sign(np.linalg.det(u @ vt))
-    if np.any(s[:, -2] + sign * s[:, -1] <= 1e-06 * s[:, 0]):
-        raise ValueError("pose: R has no single nearest rotation")
-    u[:, :, -1] *= sign[:, None]
-    return u @ vt
-
-
-_Q = 3  # where the quaternion begins in X
+    return _call(
+        "forward_kinematics", _steps_forward_kinematics, p,
+        ("q_actuated", q_actuated, (NU,)),
+        ("X0", X0, (NQ,)),
+    )
 
 
 def rotation(X):
-    """base_R_platform (..., 3, 3) at X (..., NQ); the quaternion need not be normalised.
+    """base_R_platform at X; a quaternion need not be normalised.
 
-    NaN where it is zero or its squared length overflows.
+    Impossible where the quaternion is zero or its squared length overflows.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+
+    Returns:
+        R: rotation matrix base_R_platform (..., 3, 3).
     """
-    X = _vector("rotation", "X", X, NQ)
-    with np.errstate(all="ignore"):
-        x, y, z, w = np.moveaxis(_scaled(X[..., _Q : _Q + 4]), -1, 0)
-        xx, yy, zz, ww = x * x, y * y, z * z, w * w
-        n = xx + yy + zz + ww
-        rows = (
-            ((xx + ww - (yy + zz)) / n, 2 * (x * y - w * z) / n, 2 * (x * z + w * y) / n),
-            (2 * (x * y + w * z) / n, (yy + ww - (xx + zz)) / n, 2 * (y * z - w * x) / n),
-            (2 * (x * z - w * y) / n, 2 * (y * z + w * x) / n, (zz + ww - (xx + yy)) / n),
-        )
-    return _known(np.stack([np.stack(row, axis=-1) for row in rows], axis=-2), 2, X)
-
-
-def _scaled(q):
-    """Quaternions (..., 4) with largest entry 1, so that squares of tiny ones keep their digits."""
-    size = np.max(np.abs(q), axis=-1, keepdims=True)
-    return q / np.where(np.isfinite(np.sum(q * q, axis=-1, keepdims=True)), size, np.nan)
-
-
-def _unit(q):
-    """Quaternions (..., 4) of length 1."""
-    q = _scaled(q)
-    return q / np.linalg.norm(q, axis=-1, keepdims=True)
+    return _call(
+        "rotation", _steps_rotation, None,
+        ("X", X, (NQ,)),
+    )
 
 
 def pose(t, R, *, nearest=False):
-    """X of the platform at origin t (..., 3) with rotation matrix R (..., 3, 3); extra coordinates zero.
+    """X of the platform at origin t with rotation matrix R; extra coordinates zero.
 
-    ValueError where R has not orthonormal rows, to 1e-06, and determinant +1.  With nearest=True
-    the rotation is taken that is nearest to R (least sum of squared differences of entries).
+    Args:
+        t: position of the platform origin [m] (..., 3).
+        R: rotation matrix base_R_platform (..., 3, 3).
+        nearest: take the rotation that is nearest to R: the least sum of squared differences.
+
+    Returns:
+        X: pose (..., NQ).
+
+    Raises:
+        ValueError: R has not orthonormal rows, to 1e-06, and determinant +1, or no single nearest
+            rotation.
     """
-    R = _rotations(R, 3, nearest)
-    with np.errstate(all="ignore"):
-        return _with_position("pose", t, _quaternion(R))
-
-
-def _quaternion(R):
-    """x, y, z, w of rotation matrices (..., 3, 3)."""
-    d = np.einsum("...ii->...i", R)
-    # each candidate is four times the quaternion times one of its entries; take the longest
-    s = (R[..., 2, 1] + R[..., 1, 2], R[..., 0, 2] + R[..., 2, 0], R[..., 1, 0] + R[..., 0, 1])
-    a = (R[..., 2, 1] - R[..., 1, 2], R[..., 0, 2] - R[..., 2, 0], R[..., 1, 0] - R[..., 0, 1])
-    x, y, z = d[..., 0], d[..., 1], d[..., 2]
-    candidates = np.stack([
-        np.stack((1 + x - y - z, s[2], s[1], a[0]), axis=-1),
-        np.stack((s[2], 1 - x + y - z, s[0], a[1]), axis=-1),
-        np.stack((s[1], s[0], 1 - x - y + z, a[2]), axis=-1),
-        np.stack((a[0], a[1], a[2], 1 + x + y + z), axis=-1),
-    ], axis=-2)
-    best = np.argmax(np.linalg.norm(candidates, axis=-1), axis=-1)
-    q = np.take_along_axis(candidates, best[..., None, None], axis=-2)[..., 0, :]
-    return _unit(q)
-
-
-def _with_position(function, t, q):
-    """X of a position and a quaternion; extra coordinates zero."""
-    t = _vector(function, "t", t, _Q)
-    lead = _lead(t=t, rotation=q)
-    parts = [np.broadcast_to(v, lead + v.shape[-1:]) for v in (t, q)]
-    return _known(np.concatenate((*parts, np.zeros((*lead, NQ - _Q - 4))), axis=-1), 1)
-
-
-def pose_from_rpy(t, rpy):
-    """X from roll, pitch, yaw (..., 3) about the fixed axes x, y, z, in that order."""
-    half = 0.5 * _vector("pose_from_rpy", "rpy", rpy, 3)
-    with np.errstate(all="ignore"):
-        cosines, sines = np.cos(half), np.sin(half)
-    (cx, cy, cz), (sx, sy, sz) = np.moveaxis(cosines, -1, 0), np.moveaxis(sines, -1, 0)
-    q = np.stack((
-        sx * cy * cz - cx * sy * sz, cx * sy * cz + sx * cy * sz,
-        cx * cy * sz - sx * sy * cz, cx * cy * cz + sx * sy * sz,
-    ), axis=-1)
-    return _with_position("pose_from_rpy", t, q)
+    return _call(
+        "pose", _steps_pose, None,
+        ("t", t, (3,)),
+        ("R", _rotations(R, 3, nearest), (3, 3)),
+    )
 
 
 def X_dot(X, V):
-    """Rate of X (..., NQ) at the velocity V (..., NV)."""
-    X, V = _vector("X_dot", "X", X, NQ), _vector("X_dot", "V", V, NV)
-    lead, q, w = _lead(X=X, V=V), X[..., _Q : _Q + 4], V[..., _Q : _Q + 3]
-    with np.errstate(all="ignore"):
-        vector = 0.5 * (q[..., 3:] * w + np.cross(w, q[..., :3]))
-        scalar = -0.5 * np.sum(w * q[..., :3], axis=-1, keepdims=True)
-    parts = (V[..., :_Q], vector, scalar, V[..., _Q + 3 :])
-    rate = np.concatenate([np.broadcast_to(v, lead + v.shape[-1:]) for v in parts], axis=-1)
-    return _known(rate, 1, X)
+    """Rate of X at the velocity V.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+
+    Returns:
+        X_dot: rate of X (..., NQ).
+    """
+    return _call(
+        "X_dot", _steps_X_dot, None,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+    )
 
 
-def _moved(X, step):
-    """X moved by a small twist: the quaternion turns by its angular part."""
-    w = step[_Q : _Q + 3]
-    angle = np.linalg.norm(w)
-    turn = np.append(w * (0.5 * np.sinc(angle / (2 * np.pi))), np.cos(0.5 * angle))
-    a, q = turn, _unit(X[_Q : _Q + 4])
-    vector = a[3] * q[:3] + q[3] * a[:3] + np.cross(a[:3], q[:3])
-    scalar = a[3] * q[3] - a[:3] @ q[:3]
-    return np.concatenate((X[:_Q] + step[:_Q], vector, [scalar], X[_Q + 4 :] + step[_Q + 3 :]))
+def pose_from_rpy(t, rpy):
+    """X from roll, pitch, yaw about the fixed axes x, y, z, in that order.
+
+    Args:
+        t: position of the platform origin [m] (..., 3).
+        rpy: roll, pitch, yaw about the fixed axes x, y, z [rad] (..., 3).
+
+    Returns:
+        X: pose (..., NQ).
+    """
+    return _call(
+        "pose_from_rpy", _steps_pose_from_rpy, None,
+        ("t", t, (3,)),
+        ("rpy", rpy, (3,)),
+    )

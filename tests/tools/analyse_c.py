@@ -27,6 +27,9 @@ SAMPLE = (
     "quadrupod",
 )
 
+# Read by this tool in `make analyse` alone: ten times as long as all the others together.
+LEFT_OUT_OF_SAMPLE = (("cppcheck", "hexapod_6x6r"),)
+
 # What is switched off, all of it, and why.
 OFF = {
     "clang-tidy": {
@@ -78,7 +81,8 @@ def main(arguments: list[str]) -> int:
     failures = (len(COMMANDS) - len(tools)) * (os.environ.get("CI") == "true")
     for name in names:
         source = given.folder / name / f"{name}.c"
-        failures += sum(not _passes(tool, source) for tool in tools)
+        chosen = [t for t in tools if not (given.sample and (t, name) in LEFT_OUT_OF_SAMPLE)]
+        failures += sum(not _passes(tool, source) for tool in chosen)
     return 1 if failures else 0
 
 
