@@ -27,8 +27,8 @@ SAMPLE = (
     "quadrupod",
 )
 
-# Read by this tool in `make analyse` alone: ten times as long as all the others together.
-LEFT_OUT_OF_SAMPLE = (("cppcheck", "hexapod_6x6r"),)
+# Read by these tools in `make analyse` alone: they take longer than for all others together.
+LEFT_OUT_OF_SAMPLE = (("cppcheck", "hexapod_6x6r"), ("cppcheck", "quadrupod"), ("gcc", "quadrupod"))
 
 # What is switched off, all of it, and why.
 OFF = {
