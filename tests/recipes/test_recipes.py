@@ -1,0 +1,115 @@
+"""The recipes of docs/architecture.md, carried out in a scratch copy of the sources."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "docs/architecture.md").read_text(encoding="utf-8")
+_BLOCK = re.compile(r"^```(\w+) ?(.*)\n((?:.*\n)*?)```$", re.MULTILINE)
+
+
+@dataclass(frozen=True)
+class Block:
+    """A block of code: its language, what the fence says of it, its text."""
+
+    language: str
+    said: str
+    text: str
+
+    def told(self, key: str) -> str:
+        found = re.search(rf'{key}=(?:"([^"]*)"|(\S+))', self.said)
+        return (found[1] or found[2]) if found else ""
+
+
+def recipe(title: str) -> list[Block]:
+    """The blocks below a heading of the recipes."""
+    (section,) = re.findall(rf"^### {title}\n((?:(?!^#).*\n)*)", PAGE, re.MULTILINE)
+    return [Block(*found) for found in _BLOCK.findall(section)]
+
+
+@pytest.fixture
+def copy(tmp_path: Path) -> Path:
+    folder = tmp_path / "copy"
+    folder.mkdir()
+    for name in ("pne_sym", "templates"):
+        shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
+    return folder
+
+
+def write(copy: Path, blocks: list[Block]) -> None:
+    """Do what the blocks say to the copy."""
+    for block in blocks:
+        if path := block.told("file"):
+            assert not (copy / path).exists()
+            (copy / path).write_text(block.text, encoding="utf-8")
+        if path := block.told("in"):
+            lines = (copy / path).read_text(encoding="utf-8").splitlines(keepends=True)
+            (place,) = (k for k, line in enumerate(lines) if block.told("after") in line)
+            lines[place + 1 : place + 1] = block.text.splitlines(keepends=True)
+            (copy / path).write_text("".join(lines), encoding="utf-8")
+
+
+def run(copy: Path, *command: str) -> str:
+    done = subprocess.run(
+        [sys.executable, *command],
+        cwd=copy,
+        env={**os.environ, "PYTHONPATH": str(copy), "PYTHONDONTWRITEBYTECODE": "1"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+PNE_GEN = ("-c", "import sys; from pne_sym.cli import main; sys.exit(main(sys.argv[1:]))")
+
+
+def test_the_copy_is_what_runs(copy: Path) -> None:
+    told = run(copy, "-c", "import pne_sym; print(pne_sym.__file__)")
+    assert Path(told.strip()).is_relative_to(copy)
+
+
+def test_an_output_function(copy: Path) -> None:
+    blocks = recipe("Add an output function")
+    assert len(blocks) == 3
+    write(copy, blocks)
+    (check,) = (b.text for b in blocks if b.said == "run")
+    targets = "numpy,xp,octave"
+    run(copy, *PNE_GEN, "planar_3rpr", "--target", targets, "--out", "generated_here")
+    assert (copy / "generated_here/planar_3rpr/octave/+planar_3rpr/applied_force.m").is_file()
+    assert (
+        "def applied_force(" in (copy / "generated_here/planar_3rpr/planar_3rpr_xp.py").read_text()
+    )
+    run(copy, "-c", check)
+
+
+def test_a_back_end(copy: Path) -> None:
+    blocks = recipe("Add a back end")
+    assert len(blocks) == 3
+    write(copy, blocks)
+    (commands,) = (b.text for b in blocks if b.language == "sh")
+    generate, check, explain = (line.split()[1:] for line in commands.splitlines())
+    run(copy, *PNE_GEN, *generate)
+    assert (copy / "out/planar_3rpr/listing/planar_3rpr.txt").is_file()
+    assert "up to date" in run(copy, *PNE_GEN, *check)
+    assert "root_1 =" in run(copy, *PNE_GEN, *explain)
+    run(copy, *PNE_GEN, "planar_3rpr", "--out", "out/")
+    assert not (copy / "out/planar_3rpr/listing").exists(), "stale"
+
+
+def test_every_recipe_is_tested() -> None:
+    recipes = PAGE.split("## Recipes")[1]
+    assert re.findall(r"^### (.*)$", recipes, re.MULTILINE) == [
+        "Add an output function",
+        "Add a back end",
+    ]
