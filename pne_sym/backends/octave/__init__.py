@@ -87,6 +87,7 @@ def _templates(bundle: Bundle, public: Public) -> str:
         f=public.internal,
         pivot=repr(linear.PIVOT),
         orthonormal=repr(operations.ORTHONORMAL),
+        tiny=repr(operations.TINY),
         given=program.given,
         closures=[_closure(bundle, closure) for closure in program.closures],
         quaternion=sum(name in "xyz" for name in c.pose) if c.has_quaternion else None,
