@@ -51,7 +51,7 @@ test-all: $(VENV)/test.stamp ## Run the tests, every case
 	$(BIN)/python -m pytest $(PYTEST_ARGS) -m ""
 
 .PHONY: targets
-targets: $(VENV)/targets.stamp ## Test the array-API modules with NumPy, JAX, PyTorch and Dask
+targets: $(VENV)/targets.stamp ## Test all array-API modules (NumPy, JAX, PyTorch, Dask) and Octave packages
 	$(BIN)/python -m pytest -n 0 -o norecursedirs=".*" tests/targets
 
 .PHONY: bench

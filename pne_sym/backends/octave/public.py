@@ -6,6 +6,7 @@ import inspect
 from collections.abc import Iterable
 
 from pne_sym.backends.octave.text import MatlabText, column, define, indices
+from pne_sym.program.interpret import inputs_read
 from pne_sym.program.operations import OPERATIONS
 from pne_sym.program.public import (
     Apply,
@@ -38,6 +39,8 @@ _EXPRESSIONS = {
     "join": "cat(1, {0}, {1})",
     "times": "{f}matrix_times({0}, {1})",
     "half_form": "0.5 * sum({0} .* {f}matrix_times({1}, {0}), 1)",
+    "divide_rows": "{0}; {target}({numbers}, :, :) = {target}({numbers}, :, :) ./ "
+    "reshape({1}, [1, 1, n])",
     "clear_at": "{0}; {target}({numbers}, :) = 0",
     "add_at": "{0}; {target}({numbers}, :) = {target}({numbers}, :) + {1}",
 }
@@ -57,10 +60,8 @@ class Public(MatlabText):
             f"n = size({vector.name}, {len(vector.value.shape) + 1});",
             "status = zeros(1, n);",
         ]
-        read = {name for step in function.steps for name in self._reads(step)}
-        # As in the other modules: helpers look at all that they are given.
-        looked_at = (a for a in function.inputs if a.name in read or not function.needs_model)
-        lines += [self._blame(a.value, 3) for a in looked_at]
+        read = inputs_read(self.bundle.program, function)
+        lines += [self._blame(a.value, 3) for a in function.inputs if a.name in read]
         closed = False
         for step in function.steps:
             if isinstance(step, Run) and "q" in functions[step.function].inputs and not closed:
@@ -81,15 +82,6 @@ class Public(MatlabText):
 
     def _blame(self, value: Value, status: int) -> str:
         return f"status = {self.internal}blame(status, {status}, {value.name});"
-
-    def _reads(self, step: Step) -> tuple[str, ...]:
-        """Arrays of the state that a step looks at."""
-        if isinstance(step, Run):
-            inputs = self.bundle.program.functions[step.function].inputs
-            return (*inputs, "X", "q0") if "q" in inputs else inputs
-        if isinstance(step, Search):
-            return (step.start.name, *self.others(step.residual), *self.others(step.slope))
-        return tuple(operand.name for operand in step.operands)
 
     def _step(self, step: Step) -> list[str]:
         first = "status = status + (status == 0) .* found;"
@@ -159,13 +151,13 @@ class Public(MatlabText):
         if a.default is None:
             shape = f"[{', '.join(map(str, a.value.shape))}]"
             return f"{self.internal}argument('{a.name}', {a.name}, {shape}, n)"
-        size = a.value.size
+        size, positive = a.value.size, str(a.positive).lower()
         default = {
             Default.ZEROS: f"zeros({size}, 1)",
             Default.ONES: f"ones({size}, 1)",
             Default.HOME_Q: column(self.bundle.coordinates.home[1]),
         }[a.default]
-        return f"{self.internal}optional('{a.name}', {a.name}, {default}, n)"
+        return f"{self.internal}optional('{a.name}', {a.name}, {default}, {positive}, n)"
 
     def _help(
         self, function: PublicFunction, results: list[str], names: list[str]

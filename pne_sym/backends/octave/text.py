@@ -15,8 +15,6 @@ from pne_sym.program.ir import Assignment
 
 WIDTH = 94
 NEXT = "\n    "
-LONGEST_NAME = 63
-"""Characters of a name that MATLAB looks at."""
 
 
 class MatlabText:
@@ -83,7 +81,7 @@ def by_columns(array: Any, *, legs: bool) -> str:
 
 def define(head: str, summary: str, body: Iterable[str]) -> str:
     """A function; long lines are continued."""
-    lines = [f"function {head} %#codegen", f"%{summary}", *body]
+    lines = [f"function {head}", f"%{summary}", *body]
     return "\n".join(
         (lines[0], *(line for text in lines[1:] for line in _continued(text)), "end\n")
     )

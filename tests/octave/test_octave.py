@@ -1,0 +1,129 @@
+"""MATLAB / Octave packages: a sample of what `make targets` runs, and how they are called."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pne_sym.backends.octave import OctaveBackend
+from pne_sym.backends.target import TargetError
+from pne_sym.model.reader import from_text
+from tests import models
+from tests.cli.program import pne_gen
+from tests.octave.conformance import Call, answers, conforms, octave, run, write
+from tests.program.test_public import interpreter
+
+in_octave = pytest.mark.skipif(octave() is None, reason="octave-cli is not installed")
+
+
+@in_octave
+@pytest.mark.parametrize("name", ["planar_3rpr", "fivebar_redundant", "tripod_3rps"])
+def test_equal_to_the_numpy_module(name: str) -> None:
+    conforms(models.catalogue(name))
+
+
+@in_octave
+def test_how_functions_are_called(tmp_path: Path) -> None:
+    """One column for all states, [] and nothing for defaults, parameters that are changed."""
+    path = write(models.catalogue("planar_3rpr"), tmp_path)
+    run(
+        """
+        X = planar_3rpr.home_pose(); Y = [X, X + 0.01, X - 0.01];
+        V = 0.1 * ones(3, 1); A = ones(3, 3); w = [1; 2; 3];
+        p = planar_3rpr.parameters();
+        [M, status] = planar_3rpr.M(X); assert(size(M), [3, 3]); assert(status, 0);
+        [M, status] = planar_3rpr.M(Y); assert(size(M), [3, 3, 3]); assert(status, [0, 0, 0]);
+        assert(planar_3rpr.M(X, p), M(:, :, 1)); assert(planar_3rpr.M(X, []), M(:, :, 1));
+        [M, status] = planar_3rpr.M(zeros(3, 0));
+        assert(size(M), [3, 3, 0]); assert(size(status), [1, 0]);
+        tau = planar_3rpr.inverse_dynamics(Y, V, A, [], w);
+        assert(tau(:, 2), planar_3rpr.inverse_dynamics(Y(:, 2), V, A(:, 2), p, w), 1e-13);
+        assert(tau(:, 1), planar_3rpr.inverse_dynamics(X, V, A(:, 1), p) ...
+            - planar_3rpr.H(X) \\ w, 1e-10);
+        [M, Z, H, status] = planar_3rpr.dynamics(Y, V);
+        assert(size(Z), [3, 3]); assert(status, [0, 0, 0]);
+        assert(M(:, :, 3) * A(:, 3) + Z(:, 3) - w, H(:, :, 3) * tau(:, 3), 1e-10);
+        p.platform_mass = p.platform_mass + 1;
+        heavier = planar_3rpr.M(X, p); assert(heavier(1, 1) - M(1, 1, 1), 1, 1e-12);
+        """,
+        path,
+    )
+
+
+@in_octave
+@pytest.mark.parametrize(
+    ("call", "told"),
+    [
+        ("M([1; 2])", "X: expected 3 x n, n = 1 or 1"),
+        ("Z(zeros(3, 4), zeros(3, 2))", "V: expected 3 x n"),
+        ("M([1; 2; 1i])", "X: expected real numbers"),
+        ("M(true(3, 1))", "X: expected real numbers"),
+        ("M(zeros(3, 1), setfield(planar_3rpr.parameters(), 'gravity', 1))", "p.gravity: "),
+        ("forward_dynamics(ones(3, 1), ones(3, 1), ones(3, 1), [], 1)", "wrench: expected 3 x n"),
+    ],
+)
+def test_what_does_not_fit_is_named(call: str, told: str, tmp_path: Path) -> None:
+    path = write(models.catalogue("planar_3rpr"), tmp_path)
+    script = f"try, planar_3rpr.{call}; catch e, printf('%s', e.message); end"
+    assert told in run(script, path)
+
+
+@in_octave
+def test_statuses_that_the_numpy_module_has_no_word_for() -> None:
+    """Weights that are not positive, matrices that are no rotations: INVALID."""
+    manipulator = models.catalogue("planar_4rpr")
+    reference = interpreter(manipulator)
+    X = np.tile(manipulator.home.X, (3, 1))
+    weights = np.ones((3, reference.functions["inverse_dynamics"].inputs[-1].value.size))
+    weights[0, 0], weights[1, 0] = -1.0, np.nan
+    R = np.stack([np.diag([1.0, -1.0]), 1.001 * np.eye(2), np.eye(2)])
+    zero = np.zeros((3, len(manipulator.home.X)))
+    calls = [
+        Call(
+            reference.functions["inverse_dynamics"],
+            {"X": X, "V": zero, "A": zero, "weights": weights},
+        ),
+        Call(reference.functions["pose"], {"t": zero[:, :2], "R": R}),
+    ]
+    for call, (_, status) in zip(calls, answers(manipulator, calls), strict=True):
+        assert status.tolist() == [3, 3, 0]
+        np.testing.assert_array_equal(
+            status, reference.call(call.function.name, **call.given).status
+        )
+
+
+@in_octave
+def test_help(tmp_path: Path) -> None:
+    path = write(models.catalogue("planar_3rpr"), tmp_path)
+    told = run("help('planar_3rpr.inverse_dynamics');", path)
+    for line in ("tau (3 x n): actuator forces [N or N m].", "status (1 x n): 0 OK", "X (3 x n)"):
+        assert line in told
+    assert "Generated" not in told
+
+
+def test_explain_finds_the_statements() -> None:
+    done = pne_gen("explain", "planar_3rpr", "rpr-K1", "--stage", "octave", real=True)
+    assert done.returncode == 0, done.stderr
+    assert re.search(r"^\s+\w+ = .*\.\*", done.stdout, re.MULTILINE), done.stdout
+
+
+@pytest.mark.parametrize("name", ["planar_3rpr", "stewart"])
+def test_the_language_is_matlab_s_too(name: str) -> None:
+    """No syntax of Octave alone; names that MATLAB takes; one function per file, of its name."""
+    for path, text in OctaveBackend().emit(models.bundle(models.catalogue(name))).items():
+        code = re.sub(r"'[^'\n]*'(?=[,)])", "", re.sub(r"%.*", "", text))
+        assert not re.search(r'["#!]|\+\+|\+=|\bend\w|\b_|\*\*|\bprintf\b', code), path
+        assert not re.search(r"\w{64}", code), path
+        assert not re.search(r"\bend ?\+ ?1", code), path
+        heads = re.findall(r"^function (?:[^=(]*= )?(\w+)\(", text, re.MULTILINE)
+        assert heads == ([] if path.endswith("Contents.m") else [Path(path).stem])
+
+
+def test_a_name_that_matlab_refuses() -> None:
+    toml = Path("pne_sym/manipulators/planar_3rpr.toml").read_text(encoding="utf-8")
+    named = toml.replace('name = "planar_3rpr"', 'name = "otherwise"')
+    with pytest.raises(TargetError, match=r"otherwise: .*a word of MATLAB"):
+        OctaveBackend().emit(models.bundle(from_text(named, ".toml", "otherwise")))
