@@ -110,12 +110,12 @@ def module(manipulator: Manipulator) -> Any:
     return made
 
 
-def run(m: Any, function: str, shapes: Any, *vectors: Any) -> list[Any]:
+def run(m: Any, function: str, arrays: Any, *vectors: Any) -> list[Any]:
     """Arrays (states, *shape) of a function of the program in a NumPy module, at (states, n)."""
     states = [np.moveaxis(v, 0, -1) for v in vectors]
     with np.errstate(all="ignore"):
         mode = m._mode(m._DEFAULT, len(vectors[0]))
-        found = mode.run(getattr(m, f"_run_{function}"), shapes, *states)
+        found = mode.run(getattr(m, f"_run_{function}"), arrays, *states)
     return [np.moveaxis(a, -1, 0) for a in found]
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.describe import Described, FieldView, describe, field_views
-from pne_sym.backends.numpy_functions import FunctionText
+from pne_sym.backends.numpy_functions import FunctionText, Places
 from pne_sym.backends.numpy_public import OPERATIONS, public_text, steps_text
 from pne_sym.backends.numpy_support import needed
 from pne_sym.backends.numpy_text import PythonText
@@ -31,6 +31,8 @@ class ModuleView:
     fields: tuple[FieldView, ...]
     relations: tuple[AxisRelation, ...]
     defaults: tuple[str, ...]
+    shapes: tuple[tuple[str, tuple[int, ...]], ...]
+    places: tuple[str, ...]
     driven_joints: tuple[int, ...]
     quaternion: int | None
     given: tuple[tuple[int, int], ...]
@@ -59,7 +61,8 @@ class NumpyBackend:
     def view(self, bundle: Bundle) -> ModuleView:
         """What the template prints."""
         program, c = bundle.program, bundle.coordinates
-        functions = _functions(bundle)
+        places = Places()
+        functions = _functions(bundle, places)
         texts = tuple(f.text() for f in functions)
         steps = tuple(steps_text(program, f) for f in program.public)
         public = tuple(public_text(program, f) for f in program.public if f.is_exported)
@@ -70,6 +73,8 @@ class NumpyBackend:
             fields,
             tuple(bundle.derivation.parameters.relations),
             tuple(line for f in fields for line in _default_lines(f)),
+            _shapes(functions, bundle),
+            places.lines(),
             tuple(c.joints.index(a) for a in c.actuators),
             sum(name in "xyz" for name in c.pose) if c.has_quaternion else None,
             program.given,
@@ -102,17 +107,25 @@ def support() -> str:
     return "\n".join(render(f"numpy/{name}.py.jinja", **_NUMBERS) for name in _SUPPORT)
 
 
-def _functions(bundle: Bundle) -> tuple[FunctionText, ...]:
+def _functions(bundle: Bundle, places: Places) -> tuple[FunctionText, ...]:
     """Functions of the program that steps and iterations run."""
     program = bundle.program
     judged = {n for f in program.public if f.gives_status for n in f.functions}
     run = {n for f in program.public for n in f.functions}
     run |= {f"closure_{closure.leg_type}" for closure in program.closures}
     return tuple(
-        FunctionText(bundle, f, judged=f.name in judged)
+        FunctionText(bundle, f, places, judged=f.name in judged)
         for f in program.functions.values()
         if f.name in run
     )
+
+
+def _shapes(
+    functions: Sequence[FunctionText], bundle: Bundle
+) -> tuple[tuple[str, tuple[int, ...]], ...]:
+    """Shapes of the arrays that functions give, by name."""
+    names = dict.fromkeys(array for function in functions for array in function.f.arrays)
+    return tuple((name, bundle.program.shapes[name]) for name in names)
 
 
 def _exported(bundle: Bundle) -> tuple[str, ...]:
@@ -123,12 +136,10 @@ def _exported(bundle: Bundle) -> tuple[str, ...]:
 
 def _closure(bundle: Bundle, closure: Closure) -> str:
     """A row of the table of closures."""
-    shapes = bundle.program.shapes
     name, function = closure.leg_type, bundle.program.functions[f"closure_{closure.leg_type}"]
-    arrays = tuple(shapes[a] for a in function.arrays)
     joints = f"np.array({[list(leg) for leg in closure.joints]})"
     signs = f'_BRANCHES["{closure.sign_name}"]' if closure.rows else "()"
-    facts = f"{function.inputs}, {arrays}, {joints}, {list(closure.turning)}"
+    facts = f"{function.inputs}, {function.arrays}, {joints}, {list(closure.turning)}"
     return f"(_run_closure_{name}, {facts}, {list(closure.rows)}, {signs})"
 
 
@@ -158,11 +169,13 @@ def _prepare(bundle: Bundle, functions: Sequence[FunctionText]) -> str:
         for name, of_numpy in (("sin", "sin"), ("cos", "cos"), ("atan2", "arctan2"))
         if any(f"{name}(" in formula for formula in formulas)
     ]
+    # named, so that one more leg does not change every line that runs over the legs
+    lines += [f"_{name} = {legs}" for name, legs in bundle.leg_counts.items()]
     lines += _parameters_read(bundle)
     for block in program.prepare:
         lines += text.statements(block.assignments)
         for target, value in block.sums:
-            legs = bundle.leg_counts[block.leg_type]
+            legs = f"_{block.leg_type}"
             lines.append(f"{target} = np.sum(np.broadcast_to({text.of(value)}, {legs}))")
     listed = [line for function in functions for line in function.constants()]
     lines += ["return {", *(f"    {line}" for line in listed), "}"]

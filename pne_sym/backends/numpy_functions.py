@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterable, Sequence
-from math import prod
 from typing import Any
 
 from pne_sym.backends.bundle import Bundle
@@ -23,17 +22,39 @@ _MATH = ("sqrt", "sin", "cos", "atan2", "least")
 _VERDICTS = {"invalid": "valid", "unreachable": "reached", "singular": "clear"}
 
 
+class Places:
+    """Where the values of legs stand in arrays: tables over the legs, named once for a module."""
+
+    def __init__(self) -> None:
+        self.tables: dict[str, list[tuple[int, ...]]] = {}
+
+    def named(self, array: str, leg_type: str, table: tuple[int, ...]) -> str:
+        """The table, which is that of an array's entry, as code."""
+        known = self.tables.setdefault(f"_{array}_{leg_type}", [])
+        if table not in known:
+            known.append(table)
+        return f"_{array}_{leg_type}[{known.index(table)}]"
+
+    def lines(self) -> tuple[str, ...]:
+        """Definitions of the tables."""
+        found = []
+        for name, tables in self.tables.items():
+            found += [f"{name} = (", *(f"    {list(table)}," for table in tables), ")"]
+        return tuple(found)
+
+
 class FunctionText:
     """Writes a function of a program.
 
     Args:
         bundle: of the model.
         function: what is written.
+        places: of values of legs in the module's arrays.
         judged: it tells why a state is impossible, not only whether.
     """
 
-    def __init__(self, bundle: Bundle, function: Function, *, judged: bool) -> None:
-        self.bundle, self.f, self.judged = bundle, function, judged
+    def __init__(self, bundle: Bundle, function: Function, places: Places, *, judged: bool) -> None:
+        self.bundle, self.f, self.places, self.judged = bundle, function, places, judged
         self.outside, self.inside = PythonText(bundle), PythonText(bundle, indent=8)
 
     def text(self) -> str:
@@ -42,7 +63,7 @@ class FunctionText:
         body = self._inputs() + self.outside.statements(self.f.unpack)
         body += [f"{flag} = True" for flag in self._flags()]
         body += self._required(self.f.unpack_checks, "{}")
-        body += [f"out_{array} = m.zeros({self._size(array)})" for array in self.f.arrays]
+        body += [f'out_{array} = m.zeros("{array}")' for array in self.f.arrays]
         loops = [block for block in self.f.blocks if block.leg_type]
         for block in self.f.blocks:
             body += self._loop(block, loops.index(block)) if block.leg_type else self._once(block)
@@ -61,7 +82,7 @@ class FunctionText:
         lines = [f'"{self.f.name}": (', *self._listed(self._shared()), "    ("]
         for block in (b for b in self.f.blocks if b.leg_type):
             values = self._listed(self.f.per_leg.get(block.leg_type, ()), "    ")
-            lines += [f"        ({self.bundle.leg_counts[block.leg_type]},", *values, "        ),"]
+            lines += [f"        (_{block.leg_type},", *values, "        ),"]
         return [*lines, "    ),", "),"]
 
     def _listed(self, names: Sequence[str], indent: str = "") -> list[str]:
@@ -109,8 +130,8 @@ class FunctionText:
             lines.append("sums = m.added(sums, leg, (")
             lines += [*wrap("    " + self._tuple(values)[1:-1], WIDTH - 12, "    "), "))"]
         for store in block.stores:
-            places = flat_places(store, self._columns(store.array), self.bundle.leg_counts[leg])
-            target = f"out_{store.array}[{list(places)}[leg]]"
+            table = flat_places(store, self._columns(store.array), self.bundle.leg_counts[leg])
+            target = f"out_{store.array}[{self.places.named(store.array, leg, table)}[leg]]"
             lines += text.assign(target, self._of(store.value))
         head = [f"sums = [0.0] * {len(block.sums)}"] if block.sums else []
         head.append(f"for leg, k in legs[{number}]:")
@@ -159,6 +180,3 @@ class FunctionText:
 
     def _columns(self, array: str) -> int:
         return columns(self.bundle.program.shapes[array])
-
-    def _size(self, array: str) -> int:
-        return prod(self.bundle.program.shapes[array])

@@ -71,9 +71,10 @@ def steps_text(program: Program, function: PublicFunction) -> str:
 def _step(program: Program, step: Step) -> list[str]:
     if isinstance(step, Run):
         names = [target.name for target in step.targets]
-        shapes = tuple(target.shape for target in step.targets)
-        inputs = program.functions[step.function].inputs
-        given = ", ".join((f"_run_{step.function}", str(shapes), *inputs))
+        function = program.functions[step.function]
+        arrays = ", ".join(f'"{array}"' for array in function.arrays)
+        arrays = f"({arrays}{',' * (len(function.arrays) == 1)})"
+        given = ", ".join((f"_run_{step.function}", arrays, *function.inputs))
         return unpacked(names, f"m.run({given})", WIDTH - 4)
     if isinstance(step, Apply):
         return _wrapped(f"{', '.join(target.name for target in step.targets)} = {applied(step)}")

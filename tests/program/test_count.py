@@ -73,8 +73,9 @@ class Mode:
         self.atan2 = lambda y, x: Number(tally)._after("trig")
         self.least = lambda x, y: Number(tally)._after("add")
 
-    def zeros(self, size: int) -> list[Any]:
-        return [None] * size
+    def zeros(self, name: str) -> list[Any]:
+        assert name
+        return [None] * 500
 
     def constants(self, name: str) -> Any:
         """Shared values, and values of every leg of each loop."""
@@ -127,6 +128,8 @@ def measured(text: str, function: Function, legs: dict[str, int]) -> Tally:
     (code,) = (n for n in ast.parse(text).body if isinstance(n, ast.FunctionDef) and n.name == name)
     stripped = ast.fix_missing_locations(ast.Module([Stripped(named).visit(code)], []))
     scope: dict[str, Any] = {n: Number(tally) for n in named} | dict.fromkeys(_FLAGS, True)
+    legs_of = [(a, t) for a in function.arrays for t in legs]
+    scope |= {f"_{array}_{leg_type}": [range(legs[leg_type])] * 50 for array, leg_type in legs_of}
     exec(compile(stripped, name, "exec"), scope)
     counts = [legs[block.leg_type] for block in function.blocks if block.leg_type]
     loops = list(zip(counts, unpacked(code, "k"), strict=True))

@@ -59,12 +59,13 @@ def prepared(name: str) -> dict[str, Array]:
 def of_module(name: str, function: str, vectors: dict[str, Array]) -> list[Array]:
     m, program = models.module(model_of(name)), models.bundle(model_of(name)).program
     of_program = program.functions[function]
-    shapes = [program.shapes[a] for a in of_program.arrays]
     if function == "condition":  # it is judged: values are there in impossible states too
         given = [vectors[v].T for v in of_program.inputs]
         mode = m._Judged(m._DEFAULT, given[0].shape[1])
-        return [np.moveaxis(a, -1, 0) for a in mode.run(m._run_condition, shapes, *given)]
-    return models.run(m, function, shapes, *(vectors[v] for v in of_program.inputs))
+        return [
+            np.moveaxis(a, -1, 0) for a in mode.run(m._run_condition, of_program.arrays, *given)
+        ]
+    return models.run(m, function, of_program.arrays, *(vectors[v] for v in of_program.inputs))
 
 
 @pytest.mark.parametrize("name", [*ENTRIES, *DRAWN])
