@@ -62,6 +62,58 @@ NJ = 9
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
 
+_SHAPES = {  # of the arrays that functions give
+    "M": (3, 3),
+    "Z": (3,),
+    "H": (3, 3),
+    "required": (3,),
+    "q": (9,),
+    "qd": (9,),
+    "qdd": (9,),
+    "leg_force": (3, 3),
+    "drive": (3, 3),
+    "potential": (1,),
+    "lengths": (2,),
+    "pivots": (3,),
+    "reach": (3,),
+}
+# Where the entries of a leg type's legs stand in these arrays, row by row.
+_H_rus = (
+    [0, 1, 2],
+    [3, 4, 5],
+    [6, 7, 8],
+)
+_q_rus = (
+    [0, 3, 6],
+    [1, 4, 7],
+    [2, 5, 8],
+)
+_qd_rus = (
+    [0, 3, 6],
+    [1, 4, 7],
+    [2, 5, 8],
+)
+_qdd_rus = (
+    [0, 3, 6],
+    [1, 4, 7],
+    [2, 5, 8],
+)
+_leg_force_rus = (
+    [0, 3, 6],
+    [1, 4, 7],
+    [2, 5, 8],
+)
+_drive_rus = (
+    [0, 3, 6],
+    [1, 4, 7],
+    [2, 5, 8],
+)
+_pivots_rus = (
+    [0, 1, 2],
+)
+_reach_rus = (
+    [0, 1, 2],
+)
 _DRIVEN_JOINTS = (0, 3, 6)
 
 _DEFAULTS = {
@@ -381,6 +433,7 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _rus = 3
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     gravity_z = p.gravity[2]
@@ -521,14 +574,14 @@ def _prepare(p):
     inv_size_t = 1.0/size_t
     # (rus-V6) reciprocal vector 1
     inv_size = 1.0/size
-    total_rus = np.sum(np.broadcast_to(rus_link3_mass, 3))
-    total_rus_x = np.sum(np.broadcast_to(h_star_t_4, 3))
-    total_rus_y = np.sum(np.broadcast_to(h_star_t_5, 3))
-    total_rus_z = np.sum(np.broadcast_to(h_star_t_6, 3))
-    total_rus_x_2 = np.sum(np.broadcast_to(rus_platform_point_x, 3))
-    total_rus_y_2 = np.sum(np.broadcast_to(rus_platform_point_y, 3))
-    total_rus_z_2 = np.sum(np.broadcast_to(rus_platform_point_z, 3))
-    total_rus_2 = np.sum(np.broadcast_to(size_t, 3))
+    total_rus = np.sum(np.broadcast_to(rus_link3_mass, _rus))
+    total_rus_x = np.sum(np.broadcast_to(h_star_t_4, _rus))
+    total_rus_y = np.sum(np.broadcast_to(h_star_t_5, _rus))
+    total_rus_z = np.sum(np.broadcast_to(h_star_t_6, _rus))
+    total_rus_x_2 = np.sum(np.broadcast_to(rus_platform_point_x, _rus))
+    total_rus_y_2 = np.sum(np.broadcast_to(rus_platform_point_y, _rus))
+    total_rus_z_2 = np.sum(np.broadcast_to(rus_platform_point_z, _rus))
+    total_rus_2 = np.sum(np.broadcast_to(size_t, _rus))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_rus
     # (M2) centripetal force and weight of the platform
@@ -549,7 +602,7 @@ def _prepare(p):
         "dynamics": (
         (Z_p_x, Z_p_y, Z_p_z, m_star,),
             (
-                (3,
+                (_rus,
         (J_1_zz, J_3_xx, J_3_xy, J_3_xz, J_3_yz, J_3_zz, Kd_1_t_2, Kd_1_t_3, Sigma_3_xx,
                     Sigma_3_yy, Sigma_3_zz, branch_1, branch_2, d_Gamma_3_t, d_Gamma_3_y, d_c_yy,
                     d_phi_3_t, g_r0_x, g_r0_y, g_r0_z, h_1_x, h_1_y, h_3_x, h_3_y, h_3_z,
@@ -565,7 +618,7 @@ def _prepare(p):
         "M": (
         (m_star,),
             (
-                (3,
+                (_rus,
         (J_1_zz, J_3_xx, J_3_xy, J_3_xz, J_3_yz, J_3_zz, Kd_1_t_2, Kd_1_t_3, branch_1, branch_2,
                     d_Gamma_3_t, d_Gamma_3_y, d_c_yy, d_phi_3_t, h_3_x, h_3_y, h_3_z,
                     inv_Kd_1_t_6, inv_rus_platform_joint_offset_x, inv_uu_3_t, rho2_1_t,
@@ -580,7 +633,7 @@ def _prepare(p):
         "Z": (
         (Z_p_x, Z_p_y, Z_p_z,),
             (
-                (3,
+                (_rus,
         (J_1_zz, J_3_xy, J_3_xz, J_3_yz, Kd_1_t_2, Kd_1_t_3, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz,
                     branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_1_x, h_1_y, h_3_x, h_3_y, h_3_z,
                     inv_Kd_1_t_6, inv_rus_platform_joint_offset_x, inv_uu_3_t, rho2_1_t,
@@ -595,7 +648,7 @@ def _prepare(p):
         "H": (
         (),
             (
-                (3,
+                (_rus,
         (Kd_1_t_2, Kd_1_t_3, branch_1, branch_2, inv_Kd_1_t_6, inv_uu_3_t, rho2_1_t,
                     rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx,
                     rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy,
@@ -608,7 +661,7 @@ def _prepare(p):
         "required": (
         (gravity_x, gravity_y, gravity_z, m_star,),
             (
-                (3,
+                (_rus,
         (J_1_zz, J_3_xy, J_3_xz, J_3_yz, Kd_1_t_2, Kd_1_t_3, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz,
                     branch_1, branch_2, g_r0_x, g_r0_y, h_1_x, h_1_y, h_3_x, h_3_y, h_3_z,
                     inv_Kd_1_t_6, inv_rus_platform_joint_offset_x, inv_uu_3_t, rho2_1_t,
@@ -623,7 +676,7 @@ def _prepare(p):
         "inverse_kinematics": (
         (),
             (
-                (3,
+                (_rus,
         (Kd_1_t_2, Kd_1_t_3, branch_1, branch_2, inv_Kd_1_t_6, inv_uu_3_t, rho2_1_t,
                     rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx,
                     rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy,
@@ -636,7 +689,7 @@ def _prepare(p):
         "joint_rates": (
         (),
             (
-                (3,
+                (_rus,
         (Kd_1_t_2, Kd_1_t_3, branch_1, branch_2, inv_Kd_1_t_6, inv_rus_platform_joint_offset_x,
                     inv_uu_3_t, rho2_1_t, rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz,
                     rus_base_frame_yx, rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx,
@@ -650,7 +703,7 @@ def _prepare(p):
         "joint_accelerations": (
         (),
             (
-                (3,
+                (_rus,
         (Kd_1_t_2, Kd_1_t_3, branch_1, branch_2, inv_Kd_1_t_6, inv_rus_platform_joint_offset_x,
                     inv_uu_3_t, rho2_1_t, rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz,
                     rus_base_frame_yx, rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx,
@@ -664,7 +717,7 @@ def _prepare(p):
         "legs": (
         (gravity_x, gravity_y, gravity_z,),
             (
-                (3,
+                (_rus,
         (J_1_zz, J_3_xy, J_3_xz, J_3_yz, Kd_1_t_2, Kd_1_t_3, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz,
                     branch_1, branch_2, g_r0_x, g_r0_y, h_1_x, h_1_y, h_3_x, h_3_y, h_3_z,
                     inv_Kd_1_t_6, inv_rus_platform_joint_offset_x, inv_uu_3_t, rho2_1_t,
@@ -680,7 +733,7 @@ def _prepare(p):
         "potential": (
         (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
-                (3,
+                (_rus,
         (Kd_1_t_2, Kd_1_t_3, b_r0_x, b_r0_y, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_1_x,
                     h_1_y, h_1_z, h_3_x, h_3_y, h_3_z, inv_Kd_1_t_6, inv_uu_3_t, potential_t,
                     rho2_1_t, rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz,
@@ -695,7 +748,7 @@ def _prepare(p):
         "condition": (
         (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
             (
-                (3,
+                (_rus,
         (Kd_1_t_2, Kd_1_t_3, branch_1, branch_2, inv_Kd_1_t_6, inv_rho2_1_t_4, inv_size,
                     inv_size_t, inv_uu_3_t, rho2_1_t, rus_base_frame_xx, rus_base_frame_xy,
                     rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy, rus_base_frame_yz,
@@ -746,16 +799,16 @@ class _Floats:
         """Shared values, and (leg, its values) for every leg of each loop."""
         return _constants(self.p, name)[:2]
 
-    def zeros(self, size):
-        return [0.0] * size
+    def zeros(self, name):
+        return [0.0] * math.prod(_SHAPES[name])
 
     def added(self, sums, leg, terms):
         """Sums over the legs so far."""
         return [a + b for a, b in zip(sums, terms)]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(shape)), np.nan) for shape in shapes]
+        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
         for k in range(self.states):
             try:
@@ -765,7 +818,7 @@ class _Floats:
             if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
                 for a, array in zip(found, arrays):
                     a[k] = array
-        return [a.T.reshape(*shape, self.states) for a, shape in zip(found, shapes)]
+        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
 
 
 class _Arrays:
@@ -781,8 +834,8 @@ class _Arrays:
         shared, _, columns = _constants(self.p, name)
         return shared, columns
 
-    def zeros(self, size):
-        return np.zeros((size, self.states))
+    def zeros(self, name):
+        return np.zeros((math.prod(_SHAPES[name]), self.states))
 
     def every(self, good):
         """Whether it holds for all legs."""
@@ -793,7 +846,7 @@ class _Arrays:
         shape = (legs.stop, self.states)
         return [np.add.reduce(np.broadcast_to(t, shape), axis=0) for t in terms]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
         ok, arrays = function(self, *vectors)
         for a in arrays:
@@ -801,7 +854,7 @@ class _Arrays:
         if not np.all(ok):
             for a in arrays:
                 a[:, ~ok] = np.nan
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
 
 class _Judged(_Arrays):
@@ -811,12 +864,12 @@ class _Judged(_Arrays):
         super().__init__(p, states)
         self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
         (valid, reached, clear), arrays = function(self, *vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
             self.failed[code] |= ~np.broadcast_to(good, self.states)
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -1101,9 +1154,9 @@ def _run_dynamics(m, X, V):
     t_dot_y = V_1
     t_dot_z = V_2
     ok = True
-    out_M = m.zeros(9)
-    out_Z = m.zeros(3)
-    out_H = m.zeros(9)
+    out_M = m.zeros("M")
+    out_Z = m.zeros("Z")
+    out_H = m.zeros("H")
     sums = [0.0] * 9
     for leg, k in legs[0]:
         (
@@ -1403,9 +1456,9 @@ def _run_dynamics(m, X, V):
         sums = m.added(sums, leg, (
         Q_t_12, Q_t_13, Q_t_14, Q_t_16, Q_t_17, Q_t_19, U_in_base_x, U_in_base_y, U_in_base_z,
         ))
-        out_H[[0, 1, 2][leg]] = -w_1_t_3
-        out_H[[3, 4, 5][leg]] = -w_1_t_4
-        out_H[[6, 7, 8][leg]] = -w_1_t_5
+        out_H[_H_rus[0][leg]] = -w_1_t_3
+        out_H[_H_rus[1][leg]] = -w_1_t_4
+        out_H[_H_rus[2][leg]] = -w_1_t_5
     (
     total_rus_xx, total_rus_xy, total_rus_xz, total_rus_yy, total_rus_yz, total_rus_zz,
         total_rus_x, total_rus_y, total_rus_z,
@@ -1446,7 +1499,7 @@ def _run_M(m, X):
     t_y = X_1
     t_z = X_2
     ok = True
-    out_M = m.zeros(9)
+    out_M = m.zeros("M")
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
@@ -1675,7 +1728,7 @@ def _run_Z(m, X, V):
     t_dot_y = V_1
     t_dot_z = V_2
     ok = True
-    out_Z = m.zeros(3)
+    out_Z = m.zeros("Z")
     sums = [0.0] * 3
     for leg, k in legs[0]:
         (
@@ -1921,7 +1974,7 @@ def _run_H(m, X):
     t_y = X_1
     t_z = X_2
     ok = True
-    out_H = m.zeros(9)
+    out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
         Kd_1_t_2, Kd_1_t_3, branch_1, branch_2, inv_Kd_1_t_6, inv_uu_3_t, rho2_1_t,
@@ -2027,9 +2080,9 @@ def _run_H(m, X):
             (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t) & (abs(r_1_t) > _TOLERANCE * size) &
             (abs(-v_1_t) > _TOLERANCE * size))
         )
-        out_H[[0, 1, 2][leg]] = -w_1_t_3
-        out_H[[3, 4, 5][leg]] = -w_1_t_4
-        out_H[[6, 7, 8][leg]] = -w_1_t_5
+        out_H[_H_rus[0][leg]] = -w_1_t_3
+        out_H[_H_rus[1][leg]] = -w_1_t_4
+        out_H[_H_rus[2][leg]] = -w_1_t_5
     return ok, (out_H,)
 
 
@@ -2060,8 +2113,8 @@ def _run_required(m, X, V, A):
     t_ddot_y = A_1
     t_ddot_z = A_2
     ok = True
-    out_required = m.zeros(3)
-    out_H = m.zeros(9)
+    out_required = m.zeros("required")
+    out_H = m.zeros("H")
     # (E1) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
@@ -2313,9 +2366,9 @@ def _run_required(m, X, V, A):
         sums = m.added(sums, leg, (
         c_in_base_x, c_in_base_y, c_in_base_z,
         ))
-        out_H[[0, 1, 2][leg]] = -w_1_t_3
-        out_H[[3, 4, 5][leg]] = -w_1_t_4
-        out_H[[6, 7, 8][leg]] = -w_1_t_5
+        out_H[_H_rus[0][leg]] = -w_1_t_3
+        out_H[_H_rus[1][leg]] = -w_1_t_4
+        out_H[_H_rus[2][leg]] = -w_1_t_5
     total_rus_x, total_rus_y, total_rus_z = sums
     # (E3) force that actuators and external wrench must give
     R_t_x = f_p_x - total_rus_x
@@ -2340,7 +2393,7 @@ def _run_inverse_kinematics(m, X):
     t_y = X_1
     t_z = X_2
     ok = True
-    out_q = m.zeros(9)
+    out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
         Kd_1_t_2, Kd_1_t_3, branch_1, branch_2, inv_Kd_1_t_6, inv_uu_3_t, rho2_1_t,
@@ -2397,9 +2450,9 @@ def _run_inverse_kinematics(m, X):
         ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
             (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t))
         )
-        out_q[[0, 3, 6][leg]] = q_1
-        out_q[[1, 4, 7][leg]] = q_2
-        out_q[[2, 5, 8][leg]] = q_3
+        out_q[_q_rus[0][leg]] = q_1
+        out_q[_q_rus[1][leg]] = q_2
+        out_q[_q_rus[2][leg]] = q_3
     return ok, (out_q,)
 
 
@@ -2422,7 +2475,7 @@ def _run_joint_rates(m, X, V):
     t_dot_y = V_1
     t_dot_z = V_2
     ok = True
-    out_qd = m.zeros(9)
+    out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
         Kd_1_t_2, Kd_1_t_3, branch_1, branch_2, inv_Kd_1_t_6, inv_rus_platform_joint_offset_x,
@@ -2539,9 +2592,9 @@ def _run_joint_rates(m, X, V):
             (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t) & (abs(r_1_t) > _TOLERANCE * size) &
             (abs(-v_1_t) > _TOLERANCE * size))
         )
-        out_qd[[0, 3, 6][leg]] = -qd_1
-        out_qd[[1, 4, 7][leg]] = qd_2
-        out_qd[[2, 5, 8][leg]] = qd_3
+        out_qd[_qd_rus[0][leg]] = -qd_1
+        out_qd[_qd_rus[1][leg]] = qd_2
+        out_qd[_qd_rus[2][leg]] = qd_3
     return ok, (out_qd,)
 
 
@@ -2571,7 +2624,7 @@ def _run_joint_accelerations(m, X, V, A):
     t_ddot_y = A_1
     t_ddot_z = A_2
     ok = True
-    out_qdd = m.zeros(9)
+    out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
         Kd_1_t_2, Kd_1_t_3, branch_1, branch_2, inv_Kd_1_t_6, inv_rus_platform_joint_offset_x,
@@ -2733,9 +2786,9 @@ def _run_joint_accelerations(m, X, V, A):
             (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t) & (abs(r_1_t) > _TOLERANCE * size) &
             (abs(-v_1_t) > _TOLERANCE * size))
         )
-        out_qdd[[0, 3, 6][leg]] = -qdd_1
-        out_qdd[[1, 4, 7][leg]] = qdd_2
-        out_qdd[[2, 5, 8][leg]] = -qdd_3
+        out_qdd[_qdd_rus[0][leg]] = -qdd_1
+        out_qdd[_qdd_rus[1][leg]] = qdd_2
+        out_qdd[_qdd_rus[2][leg]] = -qdd_3
     return ok, (out_qdd,)
 
 
@@ -2766,8 +2819,8 @@ def _run_legs(m, X, V, A):
     t_ddot_y = A_1
     t_ddot_z = A_2
     ok = True
-    out_leg_force = m.zeros(9)
-    out_drive = m.zeros(9)
+    out_leg_force = m.zeros("leg_force")
+    out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
         J_1_zz, J_3_xy, J_3_xz, J_3_yz, Kd_1_t_2, Kd_1_t_3, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz,
@@ -3014,12 +3067,12 @@ def _run_legs(m, X, V, A):
             (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t) & (abs(r_1_t) > _TOLERANCE * size) &
             (abs(-v_1_t) > _TOLERANCE * size))
         )
-        out_leg_force[[0, 3, 6][leg]] = c_true_in_base_x
-        out_leg_force[[1, 4, 7][leg]] = c_true_in_base_y
-        out_leg_force[[2, 5, 8][leg]] = c_true_in_base_z
-        out_drive[[0, 3, 6][leg]] = -w_1_t_3
-        out_drive[[1, 4, 7][leg]] = -w_1_t_4
-        out_drive[[2, 5, 8][leg]] = -w_1_t_5
+        out_leg_force[_leg_force_rus[0][leg]] = c_true_in_base_x
+        out_leg_force[_leg_force_rus[1][leg]] = c_true_in_base_y
+        out_leg_force[_leg_force_rus[2][leg]] = c_true_in_base_z
+        out_drive[_drive_rus[0][leg]] = -w_1_t_3
+        out_drive[_drive_rus[1][leg]] = -w_1_t_4
+        out_drive[_drive_rus[2][leg]] = -w_1_t_5
     return ok, (out_leg_force, out_drive,)
 
 
@@ -3036,7 +3089,7 @@ def _run_potential(m, X):
     t_y = X_1
     t_z = X_2
     ok = True
-    out_potential = m.zeros(1)
+    out_potential = m.zeros("potential")
     # (V1) potential energy
     potential_t_2 = (
     gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y + m_star*t_y) + gravity_z*(h_star_z +
@@ -3136,10 +3189,10 @@ def _run_condition(m, X):
     valid = True
     reached = True
     clear = True
-    out_H = m.zeros(9)
-    out_lengths = m.zeros(2)
-    out_pivots = m.zeros(3)
-    out_reach = m.zeros(3)
+    out_H = m.zeros("H")
+    out_lengths = m.zeros("lengths")
+    out_pivots = m.zeros("pivots")
+    out_reach = m.zeros("reach")
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
@@ -3268,11 +3321,11 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         spread_t_5,
         ))
-        out_H[[0, 1, 2][leg]] = -w_1_t_3
-        out_H[[3, 4, 5][leg]] = -w_1_t_4
-        out_H[[6, 7, 8][leg]] = -w_1_t_5
-        out_pivots[[0, 1, 2][leg]] = least_pivots
-        out_reach[[0, 1, 2][leg]] = disc_1
+        out_H[_H_rus[0][leg]] = -w_1_t_3
+        out_H[_H_rus[1][leg]] = -w_1_t_4
+        out_H[_H_rus[2][leg]] = -w_1_t_5
+        out_pivots[_pivots_rus[0][leg]] = least_pivots
+        out_reach[_reach_rus[0][leg]] = disc_1
     total_rus, = sums
     # (C2) rms distance of the platform points from their centroid
     spread = spread_t*sqrt(total_rus)
@@ -3285,44 +3338,42 @@ _DEFAULT = Parameters()
 
 
 def _steps_M(m, X):
-    M_of_M, = m.run(_run_M, ((3, 3),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
     return (M_of_M,)
 
 
 def _steps_Z(m, X, V):
-    Z_of_Z, = m.run(_run_Z, ((3,),), X, V)
+    Z_of_Z, = m.run(_run_Z, ("Z",), X, V)
     return (Z_of_Z,)
 
 
 def _steps_H(m, X):
-    H_of_H, = m.run(_run_H, ((3, 3),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 
 def _steps_inverse_kinematics(m, X):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((9,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     return (q_of_inverse_kinematics,)
 
 
 def _steps_joint_rates(m, X, V):
-    qd_of_joint_rates, = m.run(_run_joint_rates, ((9,),), X, V)
+    qd_of_joint_rates, = m.run(_run_joint_rates, ("qd",), X, V)
     return (qd_of_joint_rates,)
 
 
 def _steps_joint_accelerations(m, X, V, A):
-    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ((9,),), X, V, A)
+    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
     return (qdd_of_joint_accelerations,)
 
 
 def _steps_dynamics(m, X, V):
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((3, 3), (3,), (3, 3)), X, V)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
 
 
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
-    required_of_required, H_of_required = m.run(_run_required, ((3,), (3, 3)), X, V, A)
+    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     solve_3 = _solve(H_of_required, subtract_2)
@@ -3330,9 +3381,7 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((3, 3), (3,), (3, 3)), X, V)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
     extend_2 = wrench
     add_3 = times_1 + extend_2
@@ -3347,25 +3396,25 @@ def _steps_complete_acceleration(m, X, V, A, wrench):
 
 
 def _steps_leg_reactions(m, X, V, A, wrench):
-    required_of_required, H_of_required = m.run(_run_required, ((3,), (3, 3)), X, V, A)
+    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     solve_3 = _solve(H_of_required, subtract_2)
-    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ((3, 3), (3, 3)), X, V, A)
+    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
     add_forces_4 = _with_forces(leg_force_of_legs, solve_3, drive_of_legs, [0, 1, 2])
     return (add_forces_4,)
 
 
 def _steps_energy(m, X, V):
-    M_of_M, = m.run(_run_M, ((3, 3),), X)
-    potential_of_potential, = m.run(_run_potential, ((1,),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
+    potential_of_potential, = m.run(_run_potential, ("potential",), X)
     half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
     entry_2 = potential_of_potential[0]
     return (half_form_1, entry_2,)
 
 
 def _steps_null_space(m, X):
-    H_of_H, = m.run(_run_H, ((3, 3),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     null_basis_1 = _null_basis(H_of_H, 3)
     return (null_basis_1,)
 
@@ -3373,13 +3422,13 @@ def _steps_null_space(m, X):
 def _steps_condition(m, X, length):
     (
     H_of_condition, lengths_of_condition, pivots_of_condition, reach_of_condition,
-    ) = m.run(_run_condition, ((3, 3), (2,), (3,), (3,)), X)
+    ) = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
     singular_values_1 = _singular_values(H_of_condition)
     return (singular_values_1, pivots_of_condition,)
 
 
 def _steps_mismatch(m, X, q_actuated):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((9,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     take_1 = q_of_inverse_kinematics[[0, 3, 6]]
     subtract_2 = q_actuated - take_1
     wrap_turns_3 = _wrapped(subtract_2, [0, 1, 2])
@@ -3387,7 +3436,7 @@ def _steps_mismatch(m, X, q_actuated):
 
 
 def _steps_slope(m, X):
-    H_of_H, = m.run(_run_H, ((3, 3),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 

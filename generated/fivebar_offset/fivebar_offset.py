@@ -70,6 +70,97 @@ NJ = 3
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
 
+_SHAPES = {  # of the arrays that functions give
+    "M": (3, 3),
+    "Z": (3,),
+    "H": (3, 2),
+    "Hk": (3, 1),
+    "constraint_bias": (1,),
+    "required": (3,),
+    "q": (3,),
+    "qd": (3,),
+    "qdd": (3,),
+    "constraints": (1,),
+    "leg_force": (2, 3),
+    "drive": (2, 3),
+    "constraint_direction": (1, 3),
+    "potential": (1,),
+    "lengths": (2,),
+    "pivots": (2,),
+    "reach": (2,),
+}
+# Where the entries of a leg type's legs stand in these arrays, row by row.
+_H_rr = (
+    [0],
+    [2],
+    [4],
+)
+_Hk_rr = (
+    [0],
+    [1],
+    [2],
+)
+_constraint_bias_rr = (
+    [0],
+)
+_H_rrr = (
+    [1],
+    [3],
+    [5],
+)
+_q_rr = (
+    [0],
+)
+_q_rrr = (
+    [1],
+    [2],
+)
+_qd_rr = (
+    [0],
+)
+_qd_rrr = (
+    [1],
+    [2],
+)
+_qdd_rr = (
+    [0],
+)
+_qdd_rrr = (
+    [1],
+    [2],
+)
+_constraints_rr = (
+    [0],
+)
+_leg_force_rr = (
+    [0],
+    [1],
+)
+_drive_rr = (
+    [0],
+    [1],
+)
+_constraint_direction_rr = (
+    [0],
+    [1],
+)
+_leg_force_rrr = (
+    [3],
+    [4],
+)
+_drive_rrr = (
+    [3],
+    [4],
+)
+_pivots_rr = (
+    [0],
+)
+_pivots_rrr = (
+    [1],
+)
+_reach_rrr = (
+    [1],
+)
 _DRIVEN_JOINTS = (0, 1)
 
 _DEFAULTS = {
@@ -401,6 +492,8 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _rr = 1
+    _rrr = 1
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     platform_mass = p.platform_mass
@@ -476,9 +569,9 @@ def _prepare(p):
     potential_t_2 = rr_base_point_y*rr_link1_mass
     # (rr-K4) amplitude: off the manifold the nearest angle is taken
     inv_root_1_rr_t_2 = 1.0/root_1_rr_t
-    total_rr_x = np.sum(np.broadcast_to(rr_platform_point_x, 1))
-    total_rr_y = np.sum(np.broadcast_to(rr_platform_point_y, 1))
-    total_rr = np.sum(np.broadcast_to(size_rr_t, 1))
+    total_rr_x = np.sum(np.broadcast_to(rr_platform_point_x, _rr))
+    total_rr_y = np.sum(np.broadcast_to(rr_platform_point_y, _rr))
+    total_rr = np.sum(np.broadcast_to(size_rr_t, _rr))
     # (rrr-K17) squared length, across the axis, of the direction fixed in link 2
     uu_2_rrr_t = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x
     # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
@@ -544,14 +637,14 @@ def _prepare(p):
     inv_rho2_1_rrr_t_4 = 1.0/rho2_1_rrr_t
     # (rrr-V5) reciprocal vector 1
     inv_size_rrr = 1.0/size_rrr
-    total_rrr = np.sum(np.broadcast_to(rrr_link2_mass, 1))
-    total_rrr_x = np.sum(np.broadcast_to(h_star_t_3, 1))
-    total_rrr_y = np.sum(np.broadcast_to(h_star_t_4, 1))
-    total_rrr_xx = np.sum(np.broadcast_to(J_star_t_7, 1))
-    total_rrr_zz = np.sum(np.broadcast_to(J_star_t_8, 1))
-    total_rrr_x_2 = np.sum(np.broadcast_to(rrr_platform_point_x, 1))
-    total_rrr_y_2 = np.sum(np.broadcast_to(rrr_platform_point_y, 1))
-    total_rrr_2 = np.sum(np.broadcast_to(size_rrr_t, 1))
+    total_rrr = np.sum(np.broadcast_to(rrr_link2_mass, _rrr))
+    total_rrr_x = np.sum(np.broadcast_to(h_star_t_3, _rrr))
+    total_rrr_y = np.sum(np.broadcast_to(h_star_t_4, _rrr))
+    total_rrr_xx = np.sum(np.broadcast_to(J_star_t_7, _rrr))
+    total_rrr_zz = np.sum(np.broadcast_to(J_star_t_8, _rrr))
+    total_rrr_x_2 = np.sum(np.broadcast_to(rrr_platform_point_x, _rrr))
+    total_rrr_y_2 = np.sum(np.broadcast_to(rrr_platform_point_y, _rrr))
+    total_rrr_2 = np.sum(np.broadcast_to(size_rrr_t, _rrr))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_rrr
     # (L2) first moment about the platform origin
@@ -574,13 +667,13 @@ def _prepare(p):
         "dynamics": (
         (J_star_t_10, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
-                (1,
+                (_rr,
         (J_1_rr_zz, d_G_rr_yy, g_r0_x, g_r0_y, h_1_rr_x, h_1_rr_y, inv_rr_platform_joint_offset_x,
                     n_c_rr_t, n_c_rr_x, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy,
                     rr_base_frame_yx, rr_base_frame_yy, rr_base_point_x, rr_base_point_y,
                     rr_platform_joint_offset_x, rr_platform_point_x, rr_platform_point_y,),
                 ),
-                (1,
+                (_rrr,
         (J_1_rrr_zz, J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr,
                     d_Gamma_1_rrr_t, d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, g_r0_x_2,
                     g_r0_y_2, h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
@@ -595,12 +688,12 @@ def _prepare(p):
         "M": (
         (J_star_t_10, h_star_x, h_star_y, m_star,),
             (
-                (1,
+                (_rr,
         (d_G_rr_yy, n_c_rr_t, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
                     rr_base_frame_yy, rr_base_point_x, rr_base_point_y,
                     rr_platform_joint_offset_x, rr_platform_point_x, rr_platform_point_y,),
                 ),
-                (1,
+                (_rrr,
         (J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, d_Gamma_1_rrr_t,
                     d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, h_2_rrr_y, inv_Kd_1_rrr_t_5,
                     inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
@@ -614,13 +707,13 @@ def _prepare(p):
         "Z": (
         (Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y,),
             (
-                (1,
+                (_rr,
         (J_1_rr_zz, g_r0_x, g_r0_y, h_1_rr_x, h_1_rr_y, inv_rr_platform_joint_offset_x, n_c_rr_t,
                     root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
                     rr_base_frame_yy, rr_base_point_x, rr_base_point_y,
                     rr_platform_joint_offset_x, rr_platform_point_x, rr_platform_point_y,),
                 ),
-                (1,
+                (_rrr,
         (J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x_2, g_r0_y_2,
                     h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
                     inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
@@ -634,13 +727,13 @@ def _prepare(p):
         "H": (
         (),
             (
-                (1,
+                (_rr,
         (inv_rr_platform_joint_offset_x, n_c_rr_t, root_1_rr_t, rr_base_frame_xx,
                     rr_base_frame_xy, rr_base_frame_yx, rr_base_frame_yy, rr_base_point_x,
                     rr_base_point_y, rr_platform_joint_offset_x, rr_platform_point_x,
                     rr_platform_point_y,),
                 ),
-                (1,
+                (_rrr,
         (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t, rho2_1_rrr_t,
                     rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
                     rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
@@ -652,7 +745,7 @@ def _prepare(p):
         "Hk": (
         (),
             (
-                (1,
+                (_rr,
         (n_c_rr_t, n_c_rr_x, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
                     rr_base_frame_yy, rr_base_point_x, rr_base_point_y,
                     rr_platform_joint_offset_x, rr_platform_point_x, rr_platform_point_y,),
@@ -662,7 +755,7 @@ def _prepare(p):
         "constraint_bias": (
         (),
             (
-                (1,
+                (_rr,
         (inv_rr_platform_joint_offset_x, n_c_rr_t, n_c_rr_x, root_1_rr_t, rr_base_frame_xx,
                     rr_base_frame_xy, rr_base_frame_yx, rr_base_frame_yy, rr_base_point_x,
                     rr_base_point_y, rr_platform_joint_offset_x, rr_platform_point_x,
@@ -673,13 +766,13 @@ def _prepare(p):
         "required": (
         (J_star_zz, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
-                (1,
+                (_rr,
         (J_1_rr_zz, g_r0_x, g_r0_y, h_1_rr_x, h_1_rr_y, inv_rr_platform_joint_offset_x, n_c_rr_t,
                     n_c_rr_x, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
                     rr_base_frame_yy, rr_base_point_x, rr_base_point_y,
                     rr_platform_joint_offset_x, rr_platform_point_x, rr_platform_point_y,),
                 ),
-                (1,
+                (_rrr,
         (J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x_2, g_r0_y_2,
                     h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
                     inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
@@ -693,12 +786,12 @@ def _prepare(p):
         "inverse_kinematics": (
         (),
             (
-                (1,
+                (_rr,
         (n_c_rr_t, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
                     rr_base_frame_yy, rr_base_point_x, rr_base_point_y,
                     rr_platform_joint_offset_x, rr_platform_point_x, rr_platform_point_y,),
                 ),
-                (1,
+                (_rrr,
         (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t, rho2_1_rrr_t,
                     rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
                     rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
@@ -709,13 +802,13 @@ def _prepare(p):
         "joint_rates": (
         (),
             (
-                (1,
+                (_rr,
         (inv_rr_platform_joint_offset_x, n_c_rr_t, root_1_rr_t, rr_base_frame_xx,
                     rr_base_frame_xy, rr_base_frame_yx, rr_base_frame_yy, rr_base_point_x,
                     rr_base_point_y, rr_platform_joint_offset_x, rr_platform_point_x,
                     rr_platform_point_y,),
                 ),
-                (1,
+                (_rrr,
         (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
                     inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
                     rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
@@ -728,13 +821,13 @@ def _prepare(p):
         "joint_accelerations": (
         (),
             (
-                (1,
+                (_rr,
         (inv_rr_platform_joint_offset_x, n_c_rr_t, root_1_rr_t, rr_base_frame_xx,
                     rr_base_frame_xy, rr_base_frame_yx, rr_base_frame_yy, rr_base_point_x,
                     rr_base_point_y, rr_platform_joint_offset_x, rr_platform_point_x,
                     rr_platform_point_y,),
                 ),
-                (1,
+                (_rrr,
         (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
                     inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
                     rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
@@ -747,7 +840,7 @@ def _prepare(p):
         "constraints": (
         (),
             (
-                (1,
+                (_rr,
         (n_c_rr_t, n_c_rr_x, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
                     rr_base_frame_yy, rr_base_point_x, rr_base_point_y,
                     rr_platform_joint_offset_x, rr_platform_point_x, rr_platform_point_y,),
@@ -757,13 +850,13 @@ def _prepare(p):
         "legs": (
         (gravity_x, gravity_y,),
             (
-                (1,
+                (_rr,
         (J_1_rr_zz, g_r0_x, g_r0_y, h_1_rr_x, h_1_rr_y, inv_rr_platform_joint_offset_x, n_c_rr_t,
                     n_c_rr_x, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
                     rr_base_frame_yy, rr_base_point_x, rr_base_point_y,
                     rr_platform_joint_offset_x, rr_platform_point_x, rr_platform_point_y,),
                 ),
-                (1,
+                (_rrr,
         (J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x_2, g_r0_y_2,
                     h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
                     inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
@@ -777,13 +870,13 @@ def _prepare(p):
         "potential": (
         (gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
-                (1,
+                (_rr,
         (h_1_rr_x, h_1_rr_y, n_c_rr_t, potential_t, potential_t_2, root_1_rr_t, rr_base_frame_xx,
                     rr_base_frame_xy, rr_base_frame_yx, rr_base_frame_yy, rr_base_point_x,
                     rr_base_point_y, rr_platform_joint_offset_x, rr_platform_point_x,
                     rr_platform_point_y,),
                 ),
-                (1,
+                (_rrr,
         (Kd_1_rrr_t_2, Kd_1_rrr_t_3, b_rrr_r0_x, b_rrr_r0_y, branch_1_rrr, g_r0_x_2, g_r0_y_2,
                     h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t,
                     rho2_1_rrr_t, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
@@ -796,13 +889,13 @@ def _prepare(p):
         "condition": (
         (b_c_x, b_c_y, legs_size,),
             (
-                (1,
+                (_rr,
         (inv_root_1_rr_t_2, inv_rr_platform_joint_offset_x, n_c_rr_t, n_c_rr_x, root_1_rr_t,
                     rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx, rr_base_frame_yy,
                     rr_base_point_x, rr_base_point_y, rr_platform_joint_offset_x,
                     rr_platform_point_x, rr_platform_point_y,),
                 ),
-                (1,
+                (_rrr,
         (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_rho2_1_rrr_t_4,
                     inv_size_rrr, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
                     rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
@@ -851,16 +944,16 @@ class _Floats:
         """Shared values, and (leg, its values) for every leg of each loop."""
         return _constants(self.p, name)[:2]
 
-    def zeros(self, size):
-        return [0.0] * size
+    def zeros(self, name):
+        return [0.0] * math.prod(_SHAPES[name])
 
     def added(self, sums, leg, terms):
         """Sums over the legs so far."""
         return [a + b for a, b in zip(sums, terms)]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(shape)), np.nan) for shape in shapes]
+        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
         for k in range(self.states):
             try:
@@ -870,7 +963,7 @@ class _Floats:
             if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
                 for a, array in zip(found, arrays):
                     a[k] = array
-        return [a.T.reshape(*shape, self.states) for a, shape in zip(found, shapes)]
+        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
 
 
 class _Arrays:
@@ -886,8 +979,8 @@ class _Arrays:
         shared, _, columns = _constants(self.p, name)
         return shared, columns
 
-    def zeros(self, size):
-        return np.zeros((size, self.states))
+    def zeros(self, name):
+        return np.zeros((math.prod(_SHAPES[name]), self.states))
 
     def every(self, good):
         """Whether it holds for all legs."""
@@ -898,7 +991,7 @@ class _Arrays:
         shape = (legs.stop, self.states)
         return [np.add.reduce(np.broadcast_to(t, shape), axis=0) for t in terms]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
         ok, arrays = function(self, *vectors)
         for a in arrays:
@@ -906,7 +999,7 @@ class _Arrays:
         if not np.all(ok):
             for a in arrays:
                 a[:, ~ok] = np.nan
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
 
 class _Judged(_Arrays):
@@ -916,12 +1009,12 @@ class _Judged(_Arrays):
         super().__init__(p, states)
         self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
         (valid, reached, clear), arrays = function(self, *vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
             self.failed[code] |= ~np.broadcast_to(good, self.states)
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -1266,11 +1359,11 @@ def _run_dynamics(m, X, V):
     t_dot_y = V_1
     omega_z = V_2
     ok = True
-    out_M = m.zeros(9)
-    out_Z = m.zeros(3)
-    out_H = m.zeros(6)
-    out_Hk = m.zeros(3)
-    out_constraint_bias = m.zeros(1)
+    out_M = m.zeros("M")
+    out_Z = m.zeros("Z")
+    out_H = m.zeros("H")
+    out_Hk = m.zeros("Hk")
+    out_constraint_bias = m.zeros("constraint_bias")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
     h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
@@ -1363,13 +1456,13 @@ def _run_dynamics(m, X, V):
         sums = m.added(sums, leg, (
         d_c_rr_t_2, d_c_rr_t_3, d_c_rr_t_4, M_ta_t, M_ta_t_2, M_aa_t, U_rr_t, U_rr_t_2, Z_a_t,
         ))
-        out_H[[0][leg]] = w_1_rr_t
-        out_H[[2][leg]] = w_1_rr_t_2
-        out_H[[4][leg]] = H_a_1_rr_z
-        out_Hk[[0][leg]] = -n_c_rr_t_2
-        out_Hk[[1][leg]] = n_c_rr_t_3
-        out_Hk[[2][leg]] = Hk_a_1_rr_z
-        out_constraint_bias[[0][leg]] = -gamma_c1_rr_t
+        out_H[_H_rr[0][leg]] = w_1_rr_t
+        out_H[_H_rr[1][leg]] = w_1_rr_t_2
+        out_H[_H_rr[2][leg]] = H_a_1_rr_z
+        out_Hk[_Hk_rr[0][leg]] = -n_c_rr_t_2
+        out_Hk[_Hk_rr[1][leg]] = n_c_rr_t_3
+        out_Hk[_Hk_rr[2][leg]] = Hk_a_1_rr_z
+        out_constraint_bias[_constraint_bias_rr[0][leg]] = -gamma_c1_rr_t
     (
     total_rr_xx, total_rr_xy, total_rr_yy, total_rr_xz, total_rr_yz, total_rr_zz, total_rr_x,
         total_rr_y, total_rr_z,
@@ -1545,9 +1638,9 @@ def _run_dynamics(m, X, V):
         Q_rrr_t_5, Q_rrr_t_6, Q_rrr_t_7, M_ta_t_3, M_ta_t_4, M_aa_t_2, U_rrr_in_base_x,
             U_rrr_in_base_y, Z_a_t_2,
         ))
-        out_H[[1][leg]] = -w_1_rrr_t
-        out_H[[3][leg]] = w_1_rrr_t_2
-        out_H[[5][leg]] = H_a_1_rrr_z
+        out_H[_H_rrr[0][leg]] = -w_1_rrr_t
+        out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
+        out_H[_H_rrr[2][leg]] = H_a_1_rrr_z
     (
     total_rrr_xx, total_rrr_xy, total_rrr_yy, total_rrr_xz, total_rrr_yz, total_rrr_zz,
         total_rrr_x, total_rrr_y, total_rrr_z,
@@ -1597,7 +1690,7 @@ def _run_M(m, X):
     R_xx = cos(X_2)
     R_yx = sin(X_2)
     ok = True
-    out_M = m.zeros(9)
+    out_M = m.zeros("M")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
     h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
@@ -1777,7 +1870,7 @@ def _run_Z(m, X, V):
     t_dot_y = V_1
     omega_z = V_2
     ok = True
-    out_Z = m.zeros(3)
+    out_Z = m.zeros("Z")
     # (P1) centripetal tensor of the platform
     W_p_t = omega_z*omega_z
     # (M4) centripetal force and weight of the platform
@@ -1997,7 +2090,7 @@ def _run_H(m, X):
     R_xx = cos(X_2)
     R_yx = sin(X_2)
     ok = True
-    out_H = m.zeros(6)
+    out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
         inv_rr_platform_joint_offset_x, n_c_rr_t, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy,
@@ -2028,9 +2121,9 @@ def _run_H(m, X):
         # (M8) moment of the column's unit force about the platform origin
         H_a_1_rr_z = q_rr_in_base_x*w_1_rr_t_2 - q_rr_in_base_y*w_1_rr_t
         ok = ok & m.every((abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
-        out_H[[0][leg]] = w_1_rr_t
-        out_H[[2][leg]] = w_1_rr_t_2
-        out_H[[4][leg]] = H_a_1_rr_z
+        out_H[_H_rr[0][leg]] = w_1_rr_t
+        out_H[_H_rr[1][leg]] = w_1_rr_t_2
+        out_H[_H_rr[2][leg]] = H_a_1_rr_z
     for leg, k in legs[1]:
         (
         Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t, rho2_1_rrr_t,
@@ -2094,9 +2187,9 @@ def _run_H(m, X):
         ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
             0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
-        out_H[[1][leg]] = -w_1_rrr_t
-        out_H[[3][leg]] = w_1_rrr_t_2
-        out_H[[5][leg]] = H_a_1_rrr_z
+        out_H[_H_rrr[0][leg]] = -w_1_rrr_t
+        out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
+        out_H[_H_rrr[2][leg]] = H_a_1_rrr_z
     return ok, (out_H,)
 
 
@@ -2115,7 +2208,7 @@ def _run_Hk(m, X):
     R_xx = cos(X_2)
     R_yx = sin(X_2)
     ok = True
-    out_Hk = m.zeros(3)
+    out_Hk = m.zeros("Hk")
     for leg, k in legs[0]:
         (
         n_c_rr_t, n_c_rr_x, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
@@ -2142,9 +2235,9 @@ def _run_Hk(m, X):
         # (M10) moment of the column's unit force about the platform origin
         Hk_a_1_rr_z = n_c_rr_t_2*q_rr_in_base_y + n_c_rr_t_3*q_rr_in_base_x
         ok = ok & m.every((abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
-        out_Hk[[0][leg]] = -n_c_rr_t_2
-        out_Hk[[1][leg]] = n_c_rr_t_3
-        out_Hk[[2][leg]] = Hk_a_1_rr_z
+        out_Hk[_Hk_rr[0][leg]] = -n_c_rr_t_2
+        out_Hk[_Hk_rr[1][leg]] = n_c_rr_t_3
+        out_Hk[_Hk_rr[2][leg]] = Hk_a_1_rr_z
     return ok, (out_Hk,)
 
 
@@ -2170,7 +2263,7 @@ def _run_constraint_bias(m, X, V):
     t_dot_y = V_1
     omega_z = V_2
     ok = True
-    out_constraint_bias = m.zeros(1)
+    out_constraint_bias = m.zeros("constraint_bias")
     for leg, k in legs[0]:
         (
         inv_rr_platform_joint_offset_x, n_c_rr_t, n_c_rr_x, root_1_rr_t, rr_base_frame_xx,
@@ -2211,7 +2304,7 @@ def _run_constraint_bias(m, X, V):
         # (M12) part of the constraint's second derivative that does not hold the acceleration
         gamma_c1_rr_t = n_c_rr_x*rel_rr_o_x
         ok = ok & m.every((abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
-        out_constraint_bias[[0][leg]] = -gamma_c1_rr_t
+        out_constraint_bias[_constraint_bias_rr[0][leg]] = -gamma_c1_rr_t
     return ok, (out_constraint_bias,)
 
 
@@ -2245,9 +2338,9 @@ def _run_required(m, X, V, A):
     t_ddot_y = A_1
     alpha_z = A_2
     ok = True
-    out_required = m.zeros(3)
-    out_H = m.zeros(6)
-    out_Hk = m.zeros(3)
+    out_required = m.zeros("required")
+    out_H = m.zeros("H")
+    out_Hk = m.zeros("Hk")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
     h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
@@ -2320,12 +2413,12 @@ def _run_required(m, X, V, A):
         sums = m.added(sums, leg, (
         c_rr_t, c_rr_t_2, R_a_t,
         ))
-        out_H[[0][leg]] = w_1_rr_t
-        out_H[[2][leg]] = w_1_rr_t_2
-        out_H[[4][leg]] = H_a_1_rr_z
-        out_Hk[[0][leg]] = -n_c_rr_t_2
-        out_Hk[[1][leg]] = n_c_rr_t_3
-        out_Hk[[2][leg]] = Hk_a_1_rr_z
+        out_H[_H_rr[0][leg]] = w_1_rr_t
+        out_H[_H_rr[1][leg]] = w_1_rr_t_2
+        out_H[_H_rr[2][leg]] = H_a_1_rr_z
+        out_Hk[_Hk_rr[0][leg]] = -n_c_rr_t_2
+        out_Hk[_Hk_rr[1][leg]] = n_c_rr_t_3
+        out_Hk[_Hk_rr[2][leg]] = Hk_a_1_rr_z
     total_rr_x, total_rr_y, total_rr_z = sums
     sums = [0.0] * 3
     for leg, k in legs[1]:
@@ -2473,9 +2566,9 @@ def _run_required(m, X, V, A):
         sums = m.added(sums, leg, (
         c_rrr_in_base_x, c_rrr_in_base_y, R_a_t_2,
         ))
-        out_H[[1][leg]] = -w_1_rrr_t
-        out_H[[3][leg]] = w_1_rrr_t_2
-        out_H[[5][leg]] = H_a_1_rrr_z
+        out_H[_H_rrr[0][leg]] = -w_1_rrr_t
+        out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
+        out_H[_H_rrr[2][leg]] = H_a_1_rrr_z
     total_rrr_x, total_rrr_y, total_rrr_z = sums
     # (E4) force that actuators and external wrench must give
     R_t_x = f_p_x + total_rr_x - total_rrr_x
@@ -2504,7 +2597,7 @@ def _run_inverse_kinematics(m, X):
     R_xx = cos(X_2)
     R_yx = sin(X_2)
     ok = True
-    out_q = m.zeros(3)
+    out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
         n_c_rr_t, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
@@ -2526,7 +2619,7 @@ def _run_inverse_kinematics(m, X):
             inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x)
         )
         ok = ok & m.every((abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
-        out_q[[0][leg]] = q_1_rr
+        out_q[_q_rr[0][leg]] = q_1_rr
     for leg, k in legs[1]:
         (
         Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t, rho2_1_rrr_t,
@@ -2572,8 +2665,8 @@ def _run_inverse_kinematics(m, X):
         ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
             0.0))
         )
-        out_q[[1][leg]] = q_1_rrr
-        out_q[[2][leg]] = q_2_rrr
+        out_q[_q_rrr[0][leg]] = q_1_rrr
+        out_q[_q_rrr[1][leg]] = q_2_rrr
     return ok, (out_q,)
 
 
@@ -2599,7 +2692,7 @@ def _run_joint_rates(m, X, V):
     t_dot_y = V_1
     omega_z = V_2
     ok = True
-    out_qd = m.zeros(3)
+    out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
         inv_rr_platform_joint_offset_x, n_c_rr_t, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy,
@@ -2630,7 +2723,7 @@ def _run_joint_rates(m, X, V):
             rr_base_frame_yx*s_1_rr))
         )
         ok = ok & m.every((abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
-        out_qd[[0][leg]] = qd_1_rr
+        out_qd[_qd_rr[0][leg]] = qd_1_rr
     for leg, k in legs[1]:
         (
         Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
@@ -2704,8 +2797,8 @@ def _run_joint_rates(m, X, V):
         ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
             0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
-        out_qd[[1][leg]] = -qd_1_rrr
-        out_qd[[2][leg]] = qd_2_rrr
+        out_qd[_qd_rrr[0][leg]] = -qd_1_rrr
+        out_qd[_qd_rrr[1][leg]] = qd_2_rrr
     return ok, (out_qd,)
 
 
@@ -2738,7 +2831,7 @@ def _run_joint_accelerations(m, X, V, A):
     t_ddot_y = A_1
     alpha_z = A_2
     ok = True
-    out_qdd = m.zeros(3)
+    out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
         inv_rr_platform_joint_offset_x, n_c_rr_t, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy,
@@ -2772,7 +2865,7 @@ def _run_joint_accelerations(m, X, V, A):
             rr_base_frame_yx*s_1_rr))
         )
         ok = ok & m.every((abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
-        out_qdd[[0][leg]] = qdd_1_rr
+        out_qdd[_qdd_rr[0][leg]] = qdd_1_rr
     for leg, k in legs[1]:
         (
         Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
@@ -2875,8 +2968,8 @@ def _run_joint_accelerations(m, X, V, A):
         ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
             0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
-        out_qdd[[1][leg]] = -qdd_1_rrr
-        out_qdd[[2][leg]] = qdd_2_rrr
+        out_qdd[_qdd_rrr[0][leg]] = -qdd_1_rrr
+        out_qdd[_qdd_rrr[1][leg]] = qdd_2_rrr
     return ok, (out_qdd,)
 
 
@@ -2895,7 +2988,7 @@ def _run_constraints(m, X):
     R_xx = cos(X_2)
     R_yx = sin(X_2)
     ok = True
-    out_constraints = m.zeros(1)
+    out_constraints = m.zeros("constraints")
     for leg, k in legs[0]:
         (
         n_c_rr_t, n_c_rr_x, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
@@ -2918,7 +3011,7 @@ def _run_constraints(m, X):
             rr_platform_joint_offset_x)
         )
         ok = ok & m.every((abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
-        out_constraints[[0][leg]] = -phi_c1_rr_t
+        out_constraints[_constraints_rr[0][leg]] = -phi_c1_rr_t
     return ok, (out_constraints,)
 
 
@@ -2952,9 +3045,9 @@ def _run_legs(m, X, V, A):
     t_ddot_y = A_1
     alpha_z = A_2
     ok = True
-    out_leg_force = m.zeros(6)
-    out_drive = m.zeros(6)
-    out_constraint_direction = m.zeros(3)
+    out_leg_force = m.zeros("leg_force")
+    out_drive = m.zeros("drive")
+    out_constraint_direction = m.zeros("constraint_direction")
     for leg, k in legs[0]:
         (
         J_1_rr_zz, g_r0_x, g_r0_y, h_1_rr_x, h_1_rr_y, inv_rr_platform_joint_offset_x, n_c_rr_t,
@@ -3002,12 +3095,12 @@ def _run_legs(m, X, V, A):
         c_rr_t = G_rr_t*axis_y_rr_axes1_in_base_x
         c_rr_t_2 = G_rr_t*axis_y_rr_axes1_in_base_y
         ok = ok & m.every((abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
-        out_leg_force[[0][leg]] = -c_rr_t
-        out_leg_force[[1][leg]] = -c_rr_t_2
-        out_drive[[0][leg]] = w_1_rr_t
-        out_drive[[1][leg]] = w_1_rr_t_2
-        out_constraint_direction[[0][leg]] = -n_c_rr_t_2
-        out_constraint_direction[[1][leg]] = n_c_rr_t_3
+        out_leg_force[_leg_force_rr[0][leg]] = -c_rr_t
+        out_leg_force[_leg_force_rr[1][leg]] = -c_rr_t_2
+        out_drive[_drive_rr[0][leg]] = w_1_rr_t
+        out_drive[_drive_rr[1][leg]] = w_1_rr_t_2
+        out_constraint_direction[_constraint_direction_rr[0][leg]] = -n_c_rr_t_2
+        out_constraint_direction[_constraint_direction_rr[1][leg]] = n_c_rr_t_3
     for leg, k in legs[1]:
         (
         J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x_2, g_r0_y_2,
@@ -3153,10 +3246,10 @@ def _run_legs(m, X, V, A):
         ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
             0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
-        out_leg_force[[3][leg]] = c_true_rrr_in_base_x
-        out_leg_force[[4][leg]] = c_true_rrr_in_base_y
-        out_drive[[3][leg]] = -w_1_rrr_t
-        out_drive[[4][leg]] = w_1_rrr_t_2
+        out_leg_force[_leg_force_rrr[0][leg]] = c_true_rrr_in_base_x
+        out_leg_force[_leg_force_rrr[1][leg]] = c_true_rrr_in_base_y
+        out_drive[_drive_rrr[0][leg]] = -w_1_rrr_t
+        out_drive[_drive_rrr[1][leg]] = w_1_rrr_t_2
     return ok, (out_leg_force, out_drive, out_constraint_direction,)
 
 
@@ -3176,7 +3269,7 @@ def _run_potential(m, X):
     R_xx = cos(X_2)
     R_yx = sin(X_2)
     ok = True
-    out_potential = m.zeros(1)
+    out_potential = m.zeros("potential")
     # (V1) potential energy
     potential_t_3 = (
     gravity_x*(R_xx*h_star_x + m_star*t_x - R_yx*h_star_y) + gravity_y*(R_xx*h_star_y +
@@ -3298,11 +3391,11 @@ def _run_condition(m, X):
     valid = True
     reached = True
     clear = True
-    out_H = m.zeros(6)
-    out_Hk = m.zeros(3)
-    out_lengths = m.zeros(2)
-    out_pivots = m.zeros(2)
-    out_reach = m.zeros(2)
+    out_H = m.zeros("H")
+    out_Hk = m.zeros("Hk")
+    out_lengths = m.zeros("lengths")
+    out_pivots = m.zeros("pivots")
+    out_reach = m.zeros("reach")
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
@@ -3349,13 +3442,13 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         spread_t_3,
         ))
-        out_H[[0][leg]] = w_1_rr_t
-        out_H[[2][leg]] = w_1_rr_t_2
-        out_H[[4][leg]] = H_a_1_rr_z
-        out_Hk[[0][leg]] = -n_c_rr_t_2
-        out_Hk[[1][leg]] = n_c_rr_t_3
-        out_Hk[[2][leg]] = Hk_a_1_rr_z
-        out_pivots[[0][leg]] = pivot_root
+        out_H[_H_rr[0][leg]] = w_1_rr_t
+        out_H[_H_rr[1][leg]] = w_1_rr_t_2
+        out_H[_H_rr[2][leg]] = H_a_1_rr_z
+        out_Hk[_Hk_rr[0][leg]] = -n_c_rr_t_2
+        out_Hk[_Hk_rr[1][leg]] = n_c_rr_t_3
+        out_Hk[_Hk_rr[2][leg]] = Hk_a_1_rr_z
+        out_pivots[_pivots_rr[0][leg]] = pivot_root
     total_rr, = sums
     sums = [0.0] * 1
     for leg, k in legs[1]:
@@ -3436,11 +3529,11 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         spread_t_6,
         ))
-        out_H[[1][leg]] = -w_1_rrr_t
-        out_H[[3][leg]] = w_1_rrr_t_2
-        out_H[[5][leg]] = H_a_1_rrr_z
-        out_pivots[[1][leg]] = least_pivots
-        out_reach[[1][leg]] = disc_1_rrr
+        out_H[_H_rrr[0][leg]] = -w_1_rrr_t
+        out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
+        out_H[_H_rrr[2][leg]] = H_a_1_rrr_z
+        out_pivots[_pivots_rrr[0][leg]] = least_pivots
+        out_reach[_reach_rrr[0][leg]] = disc_1_rrr
     total_rrr, = sums
     # (C2) rms distance of the platform points from their centroid
     spread = sqrt(0.5*total_rr + 0.5*total_rrr)
@@ -3453,61 +3546,61 @@ _DEFAULT = Parameters()
 
 
 def _steps_M(m, X):
-    M_of_M, = m.run(_run_M, ((3, 3),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
     return (M_of_M,)
 
 
 def _steps_Z(m, X, V):
-    Z_of_Z, = m.run(_run_Z, ((3,),), X, V)
+    Z_of_Z, = m.run(_run_Z, ("Z",), X, V)
     return (Z_of_Z,)
 
 
 def _steps_H(m, X):
-    H_of_H, = m.run(_run_H, ((3, 2),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 
 def _steps_Hk(m, X):
-    Hk_of_Hk, = m.run(_run_Hk, ((3, 1),), X)
+    Hk_of_Hk, = m.run(_run_Hk, ("Hk",), X)
     return (Hk_of_Hk,)
 
 
 def _steps_constraints(m, X):
-    constraints_of_constraints, = m.run(_run_constraints, ((1,),), X)
+    constraints_of_constraints, = m.run(_run_constraints, ("constraints",), X)
     return (constraints_of_constraints,)
 
 
 def _steps_constraint_bias(m, X, V):
-    constraint_bias_of_constraint_bias, = m.run(_run_constraint_bias, ((1,),), X, V)
+    constraint_bias_of_constraint_bias, = m.run(_run_constraint_bias, ("constraint_bias",), X, V)
     return (constraint_bias_of_constraint_bias,)
 
 
 def _steps_inverse_kinematics(m, X):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((3,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     return (q_of_inverse_kinematics,)
 
 
 def _steps_joint_rates(m, X, V):
-    qd_of_joint_rates, = m.run(_run_joint_rates, ((3,),), X, V)
+    qd_of_joint_rates, = m.run(_run_joint_rates, ("qd",), X, V)
     return (qd_of_joint_rates,)
 
 
 def _steps_joint_accelerations(m, X, V, A):
-    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ((3,),), X, V, A)
+    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
     return (qdd_of_joint_accelerations,)
 
 
 def _steps_dynamics(m, X, V):
     (
     M_of_dynamics, Z_of_dynamics, H_of_dynamics, Hk_of_dynamics, constraint_bias_of_dynamics,
-    ) = m.run(_run_dynamics, ((3, 3), (3,), (3, 2), (3, 1), (1,)), X, V)
+    ) = m.run(_run_dynamics, ("M", "Z", "H", "Hk", "constraint_bias"), X, V)
     return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
 
 
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
     (
     required_of_required, H_of_required, Hk_of_required,
-    ) = m.run(_run_required, ((3,), (3, 2), (3, 1)), X, V, A)
+    ) = m.run(_run_required, ("required", "H", "Hk"), X, V, A)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     beside_3 = np.concatenate((H_of_required, Hk_of_required), axis=1)
@@ -3519,7 +3612,7 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
 def _steps_forward_dynamics(m, X, V, tau, wrench):
     (
     M_of_dynamics, Z_of_dynamics, H_of_dynamics, Hk_of_dynamics, constraint_bias_of_dynamics,
-    ) = m.run(_run_dynamics, ((3, 3), (3,), (3, 2), (3, 1), (1,)), X, V)
+    ) = m.run(_run_dynamics, ("M", "Z", "H", "Hk", "constraint_bias"), X, V)
     times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
     extend_2 = wrench
     add_3 = times_1 + extend_2
@@ -3540,7 +3633,7 @@ def _steps_complete_acceleration(m, X, V, A, wrench):
 def _steps_leg_reactions(m, X, V, A, wrench):
     (
     required_of_required, H_of_required, Hk_of_required,
-    ) = m.run(_run_required, ((3,), (3, 2), (3, 1)), X, V, A)
+    ) = m.run(_run_required, ("required", "H", "Hk"), X, V, A)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     beside_3 = np.concatenate((H_of_required, Hk_of_required), axis=1)
@@ -3548,22 +3641,22 @@ def _steps_leg_reactions(m, X, V, A, wrench):
     split_5, split_6 = solve_4[:2], solve_4[2:]
     (
     leg_force_of_legs, drive_of_legs, constraint_direction_of_legs,
-    ) = m.run(_run_legs, ((2, 3), (2, 3), (1, 3)), X, V, A)
+    ) = m.run(_run_legs, ("leg_force", "drive", "constraint_direction"), X, V, A)
     add_forces_7 = _with_forces(leg_force_of_legs, split_5, drive_of_legs, [0, 1])
     add_forces_8 = _with_forces(add_forces_7, split_6, constraint_direction_of_legs, [0])
     return (add_forces_8,)
 
 
 def _steps_energy(m, X, V):
-    M_of_M, = m.run(_run_M, ((3, 3),), X)
-    potential_of_potential, = m.run(_run_potential, ((1,),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
+    potential_of_potential, = m.run(_run_potential, ("potential",), X)
     half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
     entry_2 = potential_of_potential[0]
     return (half_form_1, entry_2,)
 
 
 def _steps_null_space(m, X):
-    H_of_H, = m.run(_run_H, ((3, 2),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     null_basis_1 = _null_basis(H_of_H, 2)
     return (null_basis_1,)
 
@@ -3572,7 +3665,7 @@ def _steps_condition(m, X, length):
     (
     H_of_condition, Hk_of_condition, lengths_of_condition, pivots_of_condition,
         reach_of_condition,
-    ) = m.run(_run_condition, ((3, 2), (3, 1), (2,), (2,), (2,)), X)
+    ) = m.run(_run_condition, ("H", "Hk", "lengths", "pivots", "reach"), X)
     choose_length_1 = _chosen_length(lengths_of_condition, length)
     divide_rows_2 = _rows_divided(H_of_condition, choose_length_1, [2])
     singular_values_3 = _singular_values(divide_rows_2)
@@ -3583,7 +3676,7 @@ def _steps_condition_constrained(m, X, length):
     (
     H_of_condition, Hk_of_condition, lengths_of_condition, pivots_of_condition,
         reach_of_condition,
-    ) = m.run(_run_condition, ((3, 2), (3, 1), (2,), (2,), (2,)), X)
+    ) = m.run(_run_condition, ("H", "Hk", "lengths", "pivots", "reach"), X)
     beside_1 = np.concatenate((H_of_condition, Hk_of_condition), axis=1)
     choose_length_2 = _chosen_length(lengths_of_condition, length)
     divide_rows_3 = _rows_divided(beside_1, choose_length_2, [2])
@@ -3592,19 +3685,19 @@ def _steps_condition_constrained(m, X, length):
 
 
 def _steps_mismatch(m, X, q_actuated):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((3,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     take_1 = q_of_inverse_kinematics[0:2]
     subtract_2 = q_actuated - take_1
     wrap_turns_3 = _wrapped(subtract_2, [0, 1])
-    constraints_of_constraints, = m.run(_run_constraints, ((1,),), X)
+    constraints_of_constraints, = m.run(_run_constraints, ("constraints",), X)
     negative_4 = -constraints_of_constraints
     join_5 = np.concatenate((wrap_turns_3, negative_4))
     return (join_5,)
 
 
 def _steps_slope(m, X):
-    H_of_H, = m.run(_run_H, ((3, 2),), X)
-    Hk_of_Hk, = m.run(_run_Hk, ((3, 1),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
+    Hk_of_Hk, = m.run(_run_Hk, ("Hk",), X)
     beside_1 = np.concatenate((H_of_H, Hk_of_Hk), axis=1)
     return (beside_1,)
 
@@ -3615,13 +3708,13 @@ def _steps_forward_kinematics(m, q_actuated, X0):
 
 
 def _steps_constraint_gap(m, X):
-    constraints_of_constraints, = m.run(_run_constraints, ((1,),), X)
+    constraints_of_constraints, = m.run(_run_constraints, ("constraints",), X)
     negative_1 = -constraints_of_constraints
     return (negative_1,)
 
 
 def _steps_constraint_slope(m, X):
-    Hk_of_Hk, = m.run(_run_Hk, ((3, 1),), X)
+    Hk_of_Hk, = m.run(_run_Hk, ("Hk",), X)
     return (Hk_of_Hk,)
 
 

@@ -62,6 +62,49 @@ NJ = 4
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
 
+_SHAPES = {  # of the arrays that functions give
+    "M": (2, 2),
+    "Z": (2,),
+    "H": (2, 2),
+    "required": (2,),
+    "q": (4,),
+    "qd": (4,),
+    "qdd": (4,),
+    "leg_force": (2, 3),
+    "drive": (2, 3),
+    "potential": (1,),
+    "lengths": (2,),
+    "pivots": (2,),
+    "reach": (2,),
+}
+# Where the entries of a leg type's legs stand in these arrays, row by row.
+_H_rpr = (
+    [0, 1],
+    [2, 3],
+)
+_q_rpr = (
+    [0, 2],
+    [1, 3],
+)
+_qd_rpr = (
+    [0, 2],
+    [1, 3],
+)
+_qdd_rpr = (
+    [0, 2],
+    [1, 3],
+)
+_leg_force_rpr = (
+    [0, 3],
+    [1, 4],
+)
+_drive_rpr = (
+    [0, 3],
+    [1, 4],
+)
+_pivots_rpr = (
+    [0, 1],
+)
 _DRIVEN_JOINTS = (1, 3)
 
 _DEFAULTS = {
@@ -357,6 +400,7 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _rpr = 2
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     platform_mass = p.platform_mass
@@ -423,11 +467,11 @@ def _prepare(p):
     # (V1) potential energy
     b_r0_x = rpr_base_frame_xx*rpr_base_point_x + rpr_base_frame_yx*rpr_base_point_y
     b_r0_y = rpr_base_frame_xy*rpr_base_point_x + rpr_base_frame_yy*rpr_base_point_y
-    total_rpr = np.sum(np.broadcast_to(rpr_link2_mass, 2))
-    total_rpr_x = np.sum(np.broadcast_to(h_star_t_3, 2))
-    total_rpr_y = np.sum(np.broadcast_to(h_star_t_4, 2))
-    total_rpr_x_2 = np.sum(np.broadcast_to(rpr_platform_point_x, 2))
-    total_rpr_y_2 = np.sum(np.broadcast_to(rpr_platform_point_y, 2))
+    total_rpr = np.sum(np.broadcast_to(rpr_link2_mass, _rpr))
+    total_rpr_x = np.sum(np.broadcast_to(h_star_t_3, _rpr))
+    total_rpr_y = np.sum(np.broadcast_to(h_star_t_4, _rpr))
+    total_rpr_x_2 = np.sum(np.broadcast_to(rpr_platform_point_x, _rpr))
+    total_rpr_y_2 = np.sum(np.broadcast_to(rpr_platform_point_y, _rpr))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_rpr
     # (M2) centripetal force and weight of the platform
@@ -443,7 +487,7 @@ def _prepare(p):
         "dynamics": (
         (Z_p_x, Z_p_y, gravity_x, gravity_y, m_star,),
             (
-                (2,
+                (_rpr,
         (J_group_1_zz, Sigma_1_xx, Sigma_1_yy, branch_1, h_2_x, h_2_y, h_group_1_x, h_group_1_y,
                     rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
                     rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
@@ -454,7 +498,7 @@ def _prepare(p):
         "M": (
         (m_star,),
             (
-                (2,
+                (_rpr,
         (J_group_1_zz, branch_1, h_2_x, h_2_y, rpr_base_frame_xx, rpr_base_frame_xy,
                     rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y,
                     rpr_platform_point_x, rpr_platform_point_y,),
@@ -464,7 +508,7 @@ def _prepare(p):
         "Z": (
         (Z_p_x, Z_p_y, gravity_x, gravity_y,),
             (
-                (2,
+                (_rpr,
         (Sigma_1_xx, Sigma_1_yy, branch_1, h_2_x, h_2_y, h_group_1_x, h_group_1_y,
                     rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
                     rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
@@ -475,7 +519,7 @@ def _prepare(p):
         "H": (
         (),
             (
-                (2,
+                (_rpr,
         (branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
                     rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
                     rpr_platform_point_y,),
@@ -485,7 +529,7 @@ def _prepare(p):
         "required": (
         (gravity_x, gravity_y, m_star,),
             (
-                (2,
+                (_rpr,
         (J_group_1_zz, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, rpr_base_frame_xx,
                     rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
                     rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y,),
@@ -495,7 +539,7 @@ def _prepare(p):
         "inverse_kinematics": (
         (),
             (
-                (2,
+                (_rpr,
         (branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
                     rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
                     rpr_platform_point_y,),
@@ -505,7 +549,7 @@ def _prepare(p):
         "joint_rates": (
         (),
             (
-                (2,
+                (_rpr,
         (branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
                     rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
                     rpr_platform_point_y,),
@@ -515,7 +559,7 @@ def _prepare(p):
         "joint_accelerations": (
         (),
             (
-                (2,
+                (_rpr,
         (branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
                     rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
                     rpr_platform_point_y,),
@@ -525,7 +569,7 @@ def _prepare(p):
         "legs": (
         (),
             (
-                (2,
+                (_rpr,
         (J_group_1_zz, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, rpr_base_frame_xx,
                     rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
                     rpr_base_point_y, rpr_link2_mass, rpr_platform_point_x,
@@ -536,7 +580,7 @@ def _prepare(p):
         "potential": (
         (gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
-                (2,
+                (_rpr,
         (b_r0_x, b_r0_y, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, rpr_base_frame_xx,
                     rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
                     rpr_base_point_y, rpr_link1_mass, rpr_platform_point_x,
@@ -547,7 +591,7 @@ def _prepare(p):
         "condition": (
         (b_c_x, b_c_y, legs_size, spread_t,),
             (
-                (2,
+                (_rpr,
         (branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
                     rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
                     rpr_platform_point_y,),
@@ -594,16 +638,16 @@ class _Floats:
         """Shared values, and (leg, its values) for every leg of each loop."""
         return _constants(self.p, name)[:2]
 
-    def zeros(self, size):
-        return [0.0] * size
+    def zeros(self, name):
+        return [0.0] * math.prod(_SHAPES[name])
 
     def added(self, sums, leg, terms):
         """Sums over the legs so far."""
         return [a + b for a, b in zip(sums, terms)]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(shape)), np.nan) for shape in shapes]
+        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
         for k in range(self.states):
             try:
@@ -613,7 +657,7 @@ class _Floats:
             if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
                 for a, array in zip(found, arrays):
                     a[k] = array
-        return [a.T.reshape(*shape, self.states) for a, shape in zip(found, shapes)]
+        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
 
 
 class _Arrays:
@@ -629,8 +673,8 @@ class _Arrays:
         shared, _, columns = _constants(self.p, name)
         return shared, columns
 
-    def zeros(self, size):
-        return np.zeros((size, self.states))
+    def zeros(self, name):
+        return np.zeros((math.prod(_SHAPES[name]), self.states))
 
     def every(self, good):
         """Whether it holds for all legs."""
@@ -641,7 +685,7 @@ class _Arrays:
         shape = (legs.stop, self.states)
         return [np.add.reduce(np.broadcast_to(t, shape), axis=0) for t in terms]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
         ok, arrays = function(self, *vectors)
         for a in arrays:
@@ -649,7 +693,7 @@ class _Arrays:
         if not np.all(ok):
             for a in arrays:
                 a[:, ~ok] = np.nan
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
 
 class _Judged(_Arrays):
@@ -659,12 +703,12 @@ class _Judged(_Arrays):
         super().__init__(p, states)
         self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
         (valid, reached, clear), arrays = function(self, *vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
             self.failed[code] |= ~np.broadcast_to(good, self.states)
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -938,9 +982,9 @@ def _run_dynamics(m, X, V):
     t_dot_x = V_0
     t_dot_y = V_1
     ok = True
-    out_M = m.zeros(4)
-    out_Z = m.zeros(2)
-    out_H = m.zeros(4)
+    out_M = m.zeros("M")
+    out_Z = m.zeros("Z")
+    out_H = m.zeros("H")
     sums = [0.0] * 5
     for leg, k in legs[0]:
         (
@@ -1001,8 +1045,8 @@ def _run_dynamics(m, X, V):
         sums = m.added(sums, leg, (
         Q_t_4, Q_t_5, Q_t_6, U_in_base_x, U_in_base_y,
         ))
-        out_H[[0, 1][leg]] = axis_x_x
-        out_H[[2, 3][leg]] = axis_x_y
+        out_H[_H_rpr[0][leg]] = axis_x_x
+        out_H[_H_rpr[1][leg]] = axis_x_y
     total_rpr_xx, total_rpr_xy, total_rpr_yy, total_rpr_x, total_rpr_y = sums
     # (M1) translational block of M
     M_tt_xx = m_star - total_rpr_xx
@@ -1030,7 +1074,7 @@ def _run_M(m, X):
     t_x = X_0
     t_y = X_1
     ok = True
-    out_M = m.zeros(4)
+    out_M = m.zeros("M")
     sums = [0.0] * 3
     for leg, k in legs[0]:
         (
@@ -1098,7 +1142,7 @@ def _run_Z(m, X, V):
     t_dot_x = V_0
     t_dot_y = V_1
     ok = True
-    out_Z = m.zeros(2)
+    out_Z = m.zeros("Z")
     sums = [0.0] * 2
     for leg, k in legs[0]:
         (
@@ -1167,7 +1211,7 @@ def _run_H(m, X):
     t_x = X_0
     t_y = X_1
     ok = True
-    out_H = m.zeros(4)
+    out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
         branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
@@ -1192,8 +1236,8 @@ def _run_H(m, X):
         ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(root_1) > _TOLERANCE
             * 0.75))
         )
-        out_H[[0, 1][leg]] = axis_x_x
-        out_H[[2, 3][leg]] = axis_x_y
+        out_H[_H_rpr[0][leg]] = axis_x_x
+        out_H[_H_rpr[1][leg]] = axis_x_y
     return ok, (out_H,)
 
 
@@ -1218,8 +1262,8 @@ def _run_required(m, X, V, A):
     t_ddot_x = A_0
     t_ddot_y = A_1
     ok = True
-    out_required = m.zeros(2)
-    out_H = m.zeros(4)
+    out_required = m.zeros("required")
+    out_H = m.zeros("H")
     # (E1) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
@@ -1284,8 +1328,8 @@ def _run_required(m, X, V, A):
         sums = m.added(sums, leg, (
         c_in_base_x, c_in_base_y,
         ))
-        out_H[[0, 1][leg]] = axis_x_x
-        out_H[[2, 3][leg]] = axis_x_y
+        out_H[_H_rpr[0][leg]] = axis_x_x
+        out_H[_H_rpr[1][leg]] = axis_x_y
     total_rpr_x, total_rpr_y = sums
     # (E3) force that actuators and external wrench must give
     R_t_x = f_p_x - total_rpr_x
@@ -1306,7 +1350,7 @@ def _run_inverse_kinematics(m, X):
     t_x = X_0
     t_y = X_1
     ok = True
-    out_q = m.zeros(4)
+    out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
         branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
@@ -1331,8 +1375,8 @@ def _run_inverse_kinematics(m, X):
         ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(root_1) > _TOLERANCE
             * 0.75))
         )
-        out_q[[0, 2][leg]] = q_1
-        out_q[[1, 3][leg]] = root_1
+        out_q[_q_rpr[0][leg]] = q_1
+        out_q[_q_rpr[1][leg]] = root_1
     return ok, (out_q,)
 
 
@@ -1351,7 +1395,7 @@ def _run_joint_rates(m, X, V):
     t_dot_x = V_0
     t_dot_y = V_1
     ok = True
-    out_qd = m.zeros(4)
+    out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
         branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
@@ -1380,8 +1424,8 @@ def _run_joint_rates(m, X, V):
         ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(root_1) > _TOLERANCE
             * 0.75))
         )
-        out_qd[[0, 2][leg]] = qd_1
-        out_qd[[1, 3][leg]] = S_dot_tip_x
+        out_qd[_qd_rpr[0][leg]] = qd_1
+        out_qd[_qd_rpr[1][leg]] = S_dot_tip_x
     return ok, (out_qd,)
 
 
@@ -1405,7 +1449,7 @@ def _run_joint_accelerations(m, X, V, A):
     t_ddot_x = A_0
     t_ddot_y = A_1
     ok = True
-    out_qdd = m.zeros(4)
+    out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
         branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
@@ -1439,8 +1483,8 @@ def _run_joint_accelerations(m, X, V, A):
         ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(root_1) > _TOLERANCE
             * 0.75))
         )
-        out_qdd[[0, 2][leg]] = qdd_1
-        out_qdd[[1, 3][leg]] = rel_x
+        out_qdd[_qdd_rpr[0][leg]] = qdd_1
+        out_qdd[_qdd_rpr[1][leg]] = rel_x
     return ok, (out_qdd,)
 
 
@@ -1464,8 +1508,8 @@ def _run_legs(m, X, V, A):
     t_ddot_x = A_0
     t_ddot_y = A_1
     ok = True
-    out_leg_force = m.zeros(6)
-    out_drive = m.zeros(6)
+    out_leg_force = m.zeros("leg_force")
+    out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
         J_group_1_zz, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, rpr_base_frame_xx,
@@ -1521,10 +1565,10 @@ def _run_legs(m, X, V, A):
         ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(root_1) > _TOLERANCE
             * 0.75))
         )
-        out_leg_force[[0, 3][leg]] = c_true_in_base_x
-        out_leg_force[[1, 4][leg]] = c_true_in_base_y
-        out_drive[[0, 3][leg]] = axis_x_x
-        out_drive[[1, 4][leg]] = axis_x_y
+        out_leg_force[_leg_force_rpr[0][leg]] = c_true_in_base_x
+        out_leg_force[_leg_force_rpr[1][leg]] = c_true_in_base_y
+        out_drive[_drive_rpr[0][leg]] = axis_x_x
+        out_drive[_drive_rpr[1][leg]] = axis_x_y
     return ok, (out_leg_force, out_drive,)
 
 
@@ -1539,7 +1583,7 @@ def _run_potential(m, X):
     t_x = X_0
     t_y = X_1
     ok = True
-    out_potential = m.zeros(1)
+    out_potential = m.zeros("potential")
     # (V1) potential energy
     potential_t = gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y + m_star*t_y)
     sums = [0.0] * 1
@@ -1599,10 +1643,10 @@ def _run_condition(m, X):
     valid = True
     reached = True
     clear = True
-    out_H = m.zeros(4)
-    out_lengths = m.zeros(2)
-    out_pivots = m.zeros(2)
-    out_reach = m.zeros(2)
+    out_H = m.zeros("H")
+    out_lengths = m.zeros("lengths")
+    out_pivots = m.zeros("pivots")
+    out_reach = m.zeros("reach")
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
@@ -1642,9 +1686,9 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         spread_t_4,
         ))
-        out_H[[0, 1][leg]] = axis_x_x
-        out_H[[2, 3][leg]] = axis_x_y
-        out_pivots[[0, 1][leg]] = least_pivots
+        out_H[_H_rpr[0][leg]] = axis_x_x
+        out_H[_H_rpr[1][leg]] = axis_x_y
+        out_pivots[_pivots_rpr[0][leg]] = least_pivots
     total_rpr, = sums
     # (C2) rms distance of the platform points from their centroid
     spread = spread_t*sqrt(total_rpr)
@@ -1657,44 +1701,42 @@ _DEFAULT = Parameters()
 
 
 def _steps_M(m, X):
-    M_of_M, = m.run(_run_M, ((2, 2),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
     return (M_of_M,)
 
 
 def _steps_Z(m, X, V):
-    Z_of_Z, = m.run(_run_Z, ((2,),), X, V)
+    Z_of_Z, = m.run(_run_Z, ("Z",), X, V)
     return (Z_of_Z,)
 
 
 def _steps_H(m, X):
-    H_of_H, = m.run(_run_H, ((2, 2),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 
 def _steps_inverse_kinematics(m, X):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((4,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     return (q_of_inverse_kinematics,)
 
 
 def _steps_joint_rates(m, X, V):
-    qd_of_joint_rates, = m.run(_run_joint_rates, ((4,),), X, V)
+    qd_of_joint_rates, = m.run(_run_joint_rates, ("qd",), X, V)
     return (qd_of_joint_rates,)
 
 
 def _steps_joint_accelerations(m, X, V, A):
-    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ((4,),), X, V, A)
+    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
     return (qdd_of_joint_accelerations,)
 
 
 def _steps_dynamics(m, X, V):
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((2, 2), (2,), (2, 2)), X, V)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
 
 
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
-    required_of_required, H_of_required = m.run(_run_required, ((2,), (2, 2)), X, V, A)
+    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     solve_3 = _solve(H_of_required, subtract_2)
@@ -1702,9 +1744,7 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((2, 2), (2,), (2, 2)), X, V)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
     extend_2 = wrench
     add_3 = times_1 + extend_2
@@ -1719,25 +1759,25 @@ def _steps_complete_acceleration(m, X, V, A, wrench):
 
 
 def _steps_leg_reactions(m, X, V, A, wrench):
-    required_of_required, H_of_required = m.run(_run_required, ((2,), (2, 2)), X, V, A)
+    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     solve_3 = _solve(H_of_required, subtract_2)
-    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ((2, 3), (2, 3)), X, V, A)
+    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
     add_forces_4 = _with_forces(leg_force_of_legs, solve_3, drive_of_legs, [0, 1])
     return (add_forces_4,)
 
 
 def _steps_energy(m, X, V):
-    M_of_M, = m.run(_run_M, ((2, 2),), X)
-    potential_of_potential, = m.run(_run_potential, ((1,),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
+    potential_of_potential, = m.run(_run_potential, ("potential",), X)
     half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
     entry_2 = potential_of_potential[0]
     return (half_form_1, entry_2,)
 
 
 def _steps_null_space(m, X):
-    H_of_H, = m.run(_run_H, ((2, 2),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     null_basis_1 = _null_basis(H_of_H, 2)
     return (null_basis_1,)
 
@@ -1745,20 +1785,20 @@ def _steps_null_space(m, X):
 def _steps_condition(m, X, length):
     (
     H_of_condition, lengths_of_condition, pivots_of_condition, reach_of_condition,
-    ) = m.run(_run_condition, ((2, 2), (2,), (2,), (2,)), X)
+    ) = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
     singular_values_1 = _singular_values(H_of_condition)
     return (singular_values_1, pivots_of_condition,)
 
 
 def _steps_mismatch(m, X, q_actuated):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((4,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     take_1 = q_of_inverse_kinematics[[1, 3]]
     subtract_2 = q_actuated - take_1
     return (subtract_2,)
 
 
 def _steps_slope(m, X):
-    H_of_H, = m.run(_run_H, ((2, 2),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 

@@ -62,6 +62,86 @@ NJ = 4
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
 
+_SHAPES = {  # of the arrays that functions give
+    "M": (2, 2),
+    "Z": (2,),
+    "H": (2, 3),
+    "required": (2,),
+    "q": (4,),
+    "qd": (4,),
+    "qdd": (4,),
+    "leg_force": (2, 3),
+    "drive": (3, 3),
+    "potential": (1,),
+    "lengths": (2,),
+    "pivots": (2,),
+    "reach": (2,),
+}
+# Where the entries of a leg type's legs stand in these arrays, row by row.
+_H_rrr = (
+    [0],
+    [3],
+    [1],
+    [4],
+)
+_H_rrr2 = (
+    [2],
+    [5],
+)
+_q_rrr = (
+    [0],
+    [1],
+)
+_q_rrr2 = (
+    [2],
+    [3],
+)
+_qd_rrr = (
+    [0],
+    [1],
+)
+_qd_rrr2 = (
+    [2],
+    [3],
+)
+_qdd_rrr = (
+    [0],
+    [1],
+)
+_qdd_rrr2 = (
+    [2],
+    [3],
+)
+_leg_force_rrr = (
+    [0],
+    [1],
+)
+_drive_rrr = (
+    [0],
+    [1],
+    [3],
+    [4],
+)
+_leg_force_rrr2 = (
+    [3],
+    [4],
+)
+_drive_rrr2 = (
+    [6],
+    [7],
+)
+_pivots_rrr = (
+    [0],
+)
+_reach_rrr = (
+    [0],
+)
+_pivots_rrr2 = (
+    [1],
+)
+_reach_rrr2 = (
+    [1],
+)
 _DRIVEN_JOINTS = (0, 1, 2)
 
 _DEFAULTS = {
@@ -414,6 +494,8 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _rrr = 1
+    _rrr2 = 1
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     platform_mass = p.platform_mass
@@ -520,12 +602,12 @@ def _prepare(p):
     inv_rho2_1_rrr_t_4 = 1.0/rho2_1_rrr_t
     # (rrr-V5) reciprocal vector 1
     inv_size_rrr = 1.0/size_rrr
-    total_rrr = np.sum(np.broadcast_to(rrr_link2_mass, 1))
-    total_rrr_x = np.sum(np.broadcast_to(h_star_t_3, 1))
-    total_rrr_y = np.sum(np.broadcast_to(h_star_t_4, 1))
-    total_rrr_x_2 = np.sum(np.broadcast_to(rrr_platform_point_x, 1))
-    total_rrr_y_2 = np.sum(np.broadcast_to(rrr_platform_point_y, 1))
-    total_rrr_2 = np.sum(np.broadcast_to(size_rrr_t, 1))
+    total_rrr = np.sum(np.broadcast_to(rrr_link2_mass, _rrr))
+    total_rrr_x = np.sum(np.broadcast_to(h_star_t_3, _rrr))
+    total_rrr_y = np.sum(np.broadcast_to(h_star_t_4, _rrr))
+    total_rrr_x_2 = np.sum(np.broadcast_to(rrr_platform_point_x, _rrr))
+    total_rrr_y_2 = np.sum(np.broadcast_to(rrr_platform_point_y, _rrr))
+    total_rrr_2 = np.sum(np.broadcast_to(size_rrr_t, _rrr))
     # (rrr2-K17) squared length, across the axis, of the direction fixed in link 2
     uu_2_rrr2_t = rrr2_platform_joint_offset_x*rrr2_platform_joint_offset_x
     # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
@@ -587,12 +669,12 @@ def _prepare(p):
     inv_rho2_1_rrr2_t_4 = 1.0/rho2_1_rrr2_t
     # (rrr2-V5) reciprocal vector 1
     inv_size_rrr2 = 1.0/size_rrr2
-    total_rrr2 = np.sum(np.broadcast_to(rrr2_link2_mass, 1))
-    total_rrr2_x = np.sum(np.broadcast_to(h_star_t_5, 1))
-    total_rrr2_y = np.sum(np.broadcast_to(h_star_t_6, 1))
-    total_rrr2_x_2 = np.sum(np.broadcast_to(rrr2_platform_point_x, 1))
-    total_rrr2_y_2 = np.sum(np.broadcast_to(rrr2_platform_point_y, 1))
-    total_rrr2_2 = np.sum(np.broadcast_to(size_rrr2_t, 1))
+    total_rrr2 = np.sum(np.broadcast_to(rrr2_link2_mass, _rrr2))
+    total_rrr2_x = np.sum(np.broadcast_to(h_star_t_5, _rrr2))
+    total_rrr2_y = np.sum(np.broadcast_to(h_star_t_6, _rrr2))
+    total_rrr2_x_2 = np.sum(np.broadcast_to(rrr2_platform_point_x, _rrr2))
+    total_rrr2_y_2 = np.sum(np.broadcast_to(rrr2_platform_point_y, _rrr2))
+    total_rrr2_2 = np.sum(np.broadcast_to(size_rrr2_t, _rrr2))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_rrr + total_rrr2
     # (M2) centripetal force and weight of the platform
@@ -610,7 +692,7 @@ def _prepare(p):
         "dynamics": (
         (Z_p_x, Z_p_y, m_star,),
             (
-                (1,
+                (_rrr,
         (J_1_rrr_zz, J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr,
                     d_Gamma_1_rrr_t, d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, g_r0_x, g_r0_y,
                     h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
@@ -620,7 +702,7 @@ def _prepare(p):
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
                     size_rrr,),
                 ),
-                (1,
+                (_rrr2,
         (J_1_rrr2_zz, J_2_rrr2_zz, Jc_1_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2,
                     d_Gamma_1_rrr2_t, d_Gamma_1_rrr2_y, d_c_rrr2_yy, d_phi_2_rrr2_t, g_r0_x_2,
                     g_r0_y_2, h_1_rrr2_x, h_1_rrr2_y, h_2_rrr2_x, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
@@ -635,7 +717,7 @@ def _prepare(p):
         "M": (
         (m_star,),
             (
-                (1,
+                (_rrr,
         (J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, d_Gamma_1_rrr_t,
                     d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, h_2_rrr_y, inv_Kd_1_rrr_t_5,
                     inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
@@ -644,7 +726,7 @@ def _prepare(p):
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
                     size_rrr,),
                 ),
-                (1,
+                (_rrr2,
         (J_2_rrr2_zz, Jc_1_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, d_Gamma_1_rrr2_t,
                     d_Gamma_1_rrr2_y, d_c_rrr2_yy, d_phi_2_rrr2_t, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
                     inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t,
@@ -658,7 +740,7 @@ def _prepare(p):
         "Z": (
         (Z_p_x, Z_p_y,),
             (
-                (1,
+                (_rrr,
         (J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x, g_r0_y,
                     h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
                     inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
@@ -667,7 +749,7 @@ def _prepare(p):
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
                     size_rrr,),
                 ),
-                (1,
+                (_rrr2,
         (J_1_rrr2_zz, J_2_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, g_r0_x_2,
                     g_r0_y_2, h_1_rrr2_x, h_1_rrr2_y, h_2_rrr2_x, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
                     inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t,
@@ -681,7 +763,7 @@ def _prepare(p):
         "H": (
         (),
             (
-                (1,
+                (_rrr,
         (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
                     inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
                     rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
@@ -689,7 +771,7 @@ def _prepare(p):
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
                     size_rrr,),
                 ),
-                (1,
+                (_rrr2,
         (Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5, inv_uu_2_rrr2_t,
                     rho2_1_rrr2_t, rrr2_base_frame_xx, rrr2_base_frame_xy, rrr2_base_frame_yx,
                     rrr2_base_frame_yy, rrr2_base_point_x, rrr2_base_point_y,
@@ -701,7 +783,7 @@ def _prepare(p):
         "required": (
         (gravity_x, gravity_y, m_star,),
             (
-                (1,
+                (_rrr,
         (J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x, g_r0_y,
                     h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
                     inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
@@ -710,7 +792,7 @@ def _prepare(p):
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
                     size_rrr,),
                 ),
-                (1,
+                (_rrr2,
         (J_1_rrr2_zz, J_2_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, g_r0_x_2,
                     g_r0_y_2, h_1_rrr2_x, h_1_rrr2_y, h_2_rrr2_x, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
                     inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t,
@@ -724,13 +806,13 @@ def _prepare(p):
         "inverse_kinematics": (
         (),
             (
-                (1,
+                (_rrr,
         (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t, rho2_1_rrr_t,
                     rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
                     rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,),
                 ),
-                (1,
+                (_rrr2,
         (Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5, inv_uu_2_rrr2_t,
                     rho2_1_rrr2_t, rrr2_base_frame_xx, rrr2_base_frame_xy, rrr2_base_frame_yx,
                     rrr2_base_frame_yy, rrr2_base_point_x, rrr2_base_point_y,
@@ -742,7 +824,7 @@ def _prepare(p):
         "joint_rates": (
         (),
             (
-                (1,
+                (_rrr,
         (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
                     inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
                     rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
@@ -750,7 +832,7 @@ def _prepare(p):
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
                     size_rrr,),
                 ),
-                (1,
+                (_rrr2,
         (Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5,
                     inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t,
                     rrr2_base_frame_xx, rrr2_base_frame_xy, rrr2_base_frame_yx,
@@ -763,7 +845,7 @@ def _prepare(p):
         "joint_accelerations": (
         (),
             (
-                (1,
+                (_rrr,
         (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
                     inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
                     rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
@@ -771,7 +853,7 @@ def _prepare(p):
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
                     size_rrr,),
                 ),
-                (1,
+                (_rrr2,
         (Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5,
                     inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t,
                     rrr2_base_frame_xx, rrr2_base_frame_xy, rrr2_base_frame_yx,
@@ -784,7 +866,7 @@ def _prepare(p):
         "legs": (
         (gravity_x, gravity_y,),
             (
-                (1,
+                (_rrr,
         (J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x, g_r0_y,
                     h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
                     inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
@@ -793,7 +875,7 @@ def _prepare(p):
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
                     size_rrr,),
                 ),
-                (1,
+                (_rrr2,
         (J_1_rrr2_zz, J_2_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, g_r0_x_2,
                     g_r0_y_2, h_1_rrr2_x, h_1_rrr2_y, h_2_rrr2_x, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
                     inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t,
@@ -807,7 +889,7 @@ def _prepare(p):
         "potential": (
         (gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
-                (1,
+                (_rrr,
         (Kd_1_rrr_t_2, Kd_1_rrr_t_3, b_rrr_r0_x, b_rrr_r0_y, branch_1_rrr, g_r0_x, g_r0_y,
                     h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t,
                     rho2_1_rrr_t, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
@@ -815,7 +897,7 @@ def _prepare(p):
                     rrr_link1_mass, rrr_platform_joint_offset_x, rrr_platform_point_x,
                     rrr_platform_point_y,),
                 ),
-                (1,
+                (_rrr2,
         (Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, b_rrr2_r0_x, b_rrr2_r0_y, branch_1_rrr2, g_r0_x_2,
                     g_r0_y_2, h_1_rrr2_x, h_1_rrr2_y, h_2_rrr2_x, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
                     inv_uu_2_rrr2_t, rho2_1_rrr2_t, rrr2_base_frame_xx, rrr2_base_frame_xy,
@@ -828,7 +910,7 @@ def _prepare(p):
         "condition": (
         (b_c_x, b_c_y, legs_size,),
             (
-                (1,
+                (_rrr,
         (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_rho2_1_rrr_t_4,
                     inv_rrr_platform_joint_offset_x, inv_size_rrr, inv_uu_2_rrr_t, rho2_1_rrr_t,
                     rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
@@ -836,7 +918,7 @@ def _prepare(p):
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
                     size_rrr,),
                 ),
-                (1,
+                (_rrr2,
         (Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5, inv_rho2_1_rrr2_t_4,
                     inv_size_rrr2, inv_uu_2_rrr2_t, rho2_1_rrr2_t, rrr2_base_frame_xx,
                     rrr2_base_frame_xy, rrr2_base_frame_yx, rrr2_base_frame_yy, rrr2_base_point_x,
@@ -885,16 +967,16 @@ class _Floats:
         """Shared values, and (leg, its values) for every leg of each loop."""
         return _constants(self.p, name)[:2]
 
-    def zeros(self, size):
-        return [0.0] * size
+    def zeros(self, name):
+        return [0.0] * math.prod(_SHAPES[name])
 
     def added(self, sums, leg, terms):
         """Sums over the legs so far."""
         return [a + b for a, b in zip(sums, terms)]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(shape)), np.nan) for shape in shapes]
+        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
         for k in range(self.states):
             try:
@@ -904,7 +986,7 @@ class _Floats:
             if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
                 for a, array in zip(found, arrays):
                     a[k] = array
-        return [a.T.reshape(*shape, self.states) for a, shape in zip(found, shapes)]
+        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
 
 
 class _Arrays:
@@ -920,8 +1002,8 @@ class _Arrays:
         shared, _, columns = _constants(self.p, name)
         return shared, columns
 
-    def zeros(self, size):
-        return np.zeros((size, self.states))
+    def zeros(self, name):
+        return np.zeros((math.prod(_SHAPES[name]), self.states))
 
     def every(self, good):
         """Whether it holds for all legs."""
@@ -932,7 +1014,7 @@ class _Arrays:
         shape = (legs.stop, self.states)
         return [np.add.reduce(np.broadcast_to(t, shape), axis=0) for t in terms]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
         ok, arrays = function(self, *vectors)
         for a in arrays:
@@ -940,7 +1022,7 @@ class _Arrays:
         if not np.all(ok):
             for a in arrays:
                 a[:, ~ok] = np.nan
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
 
 class _Judged(_Arrays):
@@ -950,12 +1032,12 @@ class _Judged(_Arrays):
         super().__init__(p, states)
         self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
         (valid, reached, clear), arrays = function(self, *vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
             self.failed[code] |= ~np.broadcast_to(good, self.states)
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -1253,9 +1335,9 @@ def _run_dynamics(m, X, V):
     t_dot_x = V_0
     t_dot_y = V_1
     ok = True
-    out_M = m.zeros(4)
-    out_Z = m.zeros(2)
-    out_H = m.zeros(6)
+    out_M = m.zeros("M")
+    out_Z = m.zeros("Z")
+    out_H = m.zeros("H")
     sums = [0.0] * 5
     for leg, k in legs[0]:
         (
@@ -1405,10 +1487,10 @@ def _run_dynamics(m, X, V):
         sums = m.added(sums, leg, (
         Q_rrr_t_5, Q_rrr_t_6, Q_rrr_t_7, U_rrr_in_base_x, U_rrr_in_base_y,
         ))
-        out_H[[0][leg]] = -w_1_rrr_t
-        out_H[[3][leg]] = w_1_rrr_t_2
-        out_H[[1][leg]] = w_2_rrr_in_base_x
-        out_H[[4][leg]] = w_2_rrr_in_base_y
+        out_H[_H_rrr[0][leg]] = -w_1_rrr_t
+        out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
+        out_H[_H_rrr[2][leg]] = w_2_rrr_in_base_x
+        out_H[_H_rrr[3][leg]] = w_2_rrr_in_base_y
     total_rrr_xx, total_rrr_xy, total_rrr_yy, total_rrr_x, total_rrr_y = sums
     sums = [0.0] * 5
     for leg, k in legs[1]:
@@ -1559,8 +1641,8 @@ def _run_dynamics(m, X, V):
         sums = m.added(sums, leg, (
         Q_rrr2_t_5, Q_rrr2_t_6, Q_rrr2_t_7, U_rrr2_in_base_x, U_rrr2_in_base_y,
         ))
-        out_H[[2][leg]] = -w_1_rrr2_t
-        out_H[[5][leg]] = w_1_rrr2_t_2
+        out_H[_H_rrr2[0][leg]] = -w_1_rrr2_t
+        out_H[_H_rrr2[1][leg]] = w_1_rrr2_t_2
     total_rrr2_xx, total_rrr2_xy, total_rrr2_yy, total_rrr2_x, total_rrr2_y = sums
     # (M1) translational block of M
     M_tt_xx = m_star - total_rrr2_xx - total_rrr_xx
@@ -1589,7 +1671,7 @@ def _run_M(m, X):
     t_x = X_0
     t_y = X_1
     ok = True
-    out_M = m.zeros(4)
+    out_M = m.zeros("M")
     sums = [0.0] * 3
     for leg, k in legs[0]:
         (
@@ -1797,7 +1879,7 @@ def _run_Z(m, X, V):
     t_dot_x = V_0
     t_dot_y = V_1
     ok = True
-    out_Z = m.zeros(2)
+    out_Z = m.zeros("Z")
     sums = [0.0] * 2
     for leg, k in legs[0]:
         (
@@ -2051,7 +2133,7 @@ def _run_H(m, X):
     t_x = X_0
     t_y = X_1
     ok = True
-    out_H = m.zeros(6)
+    out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
         Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
@@ -2127,10 +2209,10 @@ def _run_H(m, X):
         ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
             0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
-        out_H[[0][leg]] = -w_1_rrr_t
-        out_H[[3][leg]] = w_1_rrr_t_2
-        out_H[[1][leg]] = w_2_rrr_in_base_x
-        out_H[[4][leg]] = w_2_rrr_in_base_y
+        out_H[_H_rrr[0][leg]] = -w_1_rrr_t
+        out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
+        out_H[_H_rrr[2][leg]] = w_2_rrr_in_base_x
+        out_H[_H_rrr[3][leg]] = w_2_rrr_in_base_y
     for leg, k in legs[1]:
         (
         Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5, inv_uu_2_rrr2_t,
@@ -2190,8 +2272,8 @@ def _run_H(m, X):
         ok & m.every((abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2
             >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
         )
-        out_H[[2][leg]] = -w_1_rrr2_t
-        out_H[[5][leg]] = w_1_rrr2_t_2
+        out_H[_H_rrr2[0][leg]] = -w_1_rrr2_t
+        out_H[_H_rrr2[1][leg]] = w_1_rrr2_t_2
     return ok, (out_H,)
 
 
@@ -2216,8 +2298,8 @@ def _run_required(m, X, V, A):
     t_ddot_x = A_0
     t_ddot_y = A_1
     ok = True
-    out_required = m.zeros(2)
-    out_H = m.zeros(6)
+    out_required = m.zeros("required")
+    out_H = m.zeros("H")
     # (E1) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
@@ -2364,10 +2446,10 @@ def _run_required(m, X, V, A):
         sums = m.added(sums, leg, (
         c_rrr_in_base_x, c_rrr_in_base_y,
         ))
-        out_H[[0][leg]] = -w_1_rrr_t
-        out_H[[3][leg]] = w_1_rrr_t_2
-        out_H[[1][leg]] = w_2_rrr_in_base_x
-        out_H[[4][leg]] = w_2_rrr_in_base_y
+        out_H[_H_rrr[0][leg]] = -w_1_rrr_t
+        out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
+        out_H[_H_rrr[2][leg]] = w_2_rrr_in_base_x
+        out_H[_H_rrr[3][leg]] = w_2_rrr_in_base_y
     total_rrr_x, total_rrr_y = sums
     sums = [0.0] * 2
     for leg, k in legs[1]:
@@ -2505,8 +2587,8 @@ def _run_required(m, X, V, A):
         sums = m.added(sums, leg, (
         c_rrr2_in_base_x, c_rrr2_in_base_y,
         ))
-        out_H[[2][leg]] = -w_1_rrr2_t
-        out_H[[5][leg]] = w_1_rrr2_t_2
+        out_H[_H_rrr2[0][leg]] = -w_1_rrr2_t
+        out_H[_H_rrr2[1][leg]] = w_1_rrr2_t_2
     total_rrr2_x, total_rrr2_y = sums
     # (E3) force that actuators and external wrench must give
     R_t_x = f_p_x - total_rrr2_x - total_rrr_x
@@ -2527,7 +2609,7 @@ def _run_inverse_kinematics(m, X):
     t_x = X_0
     t_y = X_1
     ok = True
-    out_q = m.zeros(4)
+    out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
         Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t, rho2_1_rrr_t,
@@ -2573,8 +2655,8 @@ def _run_inverse_kinematics(m, X):
         ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
             0.0))
         )
-        out_q[[0][leg]] = q_1_rrr
-        out_q[[1][leg]] = q_2_rrr
+        out_q[_q_rrr[0][leg]] = q_1_rrr
+        out_q[_q_rrr[1][leg]] = q_2_rrr
     for leg, k in legs[1]:
         (
         Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5, inv_uu_2_rrr2_t,
@@ -2620,8 +2702,8 @@ def _run_inverse_kinematics(m, X):
         ok & m.every((abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2
             >= 0.0))
         )
-        out_q[[2][leg]] = q_1_rrr2
-        out_q[[3][leg]] = q_2_rrr2
+        out_q[_q_rrr2[0][leg]] = q_1_rrr2
+        out_q[_q_rrr2[1][leg]] = q_2_rrr2
     return ok, (out_q,)
 
 
@@ -2640,7 +2722,7 @@ def _run_joint_rates(m, X, V):
     t_dot_x = V_0
     t_dot_y = V_1
     ok = True
-    out_qd = m.zeros(4)
+    out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
         Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
@@ -2707,8 +2789,8 @@ def _run_joint_rates(m, X, V):
         ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
             0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
-        out_qd[[0][leg]] = -qd_1_rrr
-        out_qd[[1][leg]] = qd_2_rrr
+        out_qd[_qd_rrr[0][leg]] = -qd_1_rrr
+        out_qd[_qd_rrr[1][leg]] = qd_2_rrr
     for leg, k in legs[1]:
         (
         Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5,
@@ -2776,8 +2858,8 @@ def _run_joint_rates(m, X, V):
         ok & m.every((abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2
             >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
         )
-        out_qd[[2][leg]] = -qd_1_rrr2
-        out_qd[[3][leg]] = qd_2_rrr2
+        out_qd[_qd_rrr2[0][leg]] = -qd_1_rrr2
+        out_qd[_qd_rrr2[1][leg]] = qd_2_rrr2
     return ok, (out_qd,)
 
 
@@ -2801,7 +2883,7 @@ def _run_joint_accelerations(m, X, V, A):
     t_ddot_x = A_0
     t_ddot_y = A_1
     ok = True
-    out_qdd = m.zeros(4)
+    out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
         Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
@@ -2889,8 +2971,8 @@ def _run_joint_accelerations(m, X, V, A):
         ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
             0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
-        out_qdd[[0][leg]] = -qdd_1_rrr
-        out_qdd[[1][leg]] = qdd_2_rrr
+        out_qdd[_qdd_rrr[0][leg]] = -qdd_1_rrr
+        out_qdd[_qdd_rrr[1][leg]] = qdd_2_rrr
     for leg, k in legs[1]:
         (
         Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5,
@@ -2979,8 +3061,8 @@ def _run_joint_accelerations(m, X, V, A):
         ok & m.every((abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2
             >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
         )
-        out_qdd[[2][leg]] = -qdd_1_rrr2
-        out_qdd[[3][leg]] = qdd_2_rrr2
+        out_qdd[_qdd_rrr2[0][leg]] = -qdd_1_rrr2
+        out_qdd[_qdd_rrr2[1][leg]] = qdd_2_rrr2
     return ok, (out_qdd,)
 
 
@@ -3005,8 +3087,8 @@ def _run_legs(m, X, V, A):
     t_ddot_x = A_0
     t_ddot_y = A_1
     ok = True
-    out_leg_force = m.zeros(6)
-    out_drive = m.zeros(9)
+    out_leg_force = m.zeros("leg_force")
+    out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
         J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x, g_r0_y,
@@ -3150,12 +3232,12 @@ def _run_legs(m, X, V, A):
         ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
             0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
-        out_leg_force[[0][leg]] = c_true_rrr_in_base_x
-        out_leg_force[[1][leg]] = c_true_rrr_in_base_y
-        out_drive[[0][leg]] = -w_1_rrr_t
-        out_drive[[1][leg]] = w_1_rrr_t_2
-        out_drive[[3][leg]] = w_2_rrr_in_base_x
-        out_drive[[4][leg]] = w_2_rrr_in_base_y
+        out_leg_force[_leg_force_rrr[0][leg]] = c_true_rrr_in_base_x
+        out_leg_force[_leg_force_rrr[1][leg]] = c_true_rrr_in_base_y
+        out_drive[_drive_rrr[0][leg]] = -w_1_rrr_t
+        out_drive[_drive_rrr[1][leg]] = w_1_rrr_t_2
+        out_drive[_drive_rrr[2][leg]] = w_2_rrr_in_base_x
+        out_drive[_drive_rrr[3][leg]] = w_2_rrr_in_base_y
     for leg, k in legs[1]:
         (
         J_1_rrr2_zz, J_2_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, g_r0_x_2, g_r0_y_2,
@@ -3291,10 +3373,10 @@ def _run_legs(m, X, V, A):
         ok & m.every((abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2
             >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
         )
-        out_leg_force[[3][leg]] = c_true_rrr2_in_base_x
-        out_leg_force[[4][leg]] = c_true_rrr2_in_base_y
-        out_drive[[6][leg]] = -w_1_rrr2_t
-        out_drive[[7][leg]] = w_1_rrr2_t_2
+        out_leg_force[_leg_force_rrr2[0][leg]] = c_true_rrr2_in_base_x
+        out_leg_force[_leg_force_rrr2[1][leg]] = c_true_rrr2_in_base_y
+        out_drive[_drive_rrr2[0][leg]] = -w_1_rrr2_t
+        out_drive[_drive_rrr2[1][leg]] = w_1_rrr2_t_2
     return ok, (out_leg_force, out_drive,)
 
 
@@ -3309,7 +3391,7 @@ def _run_potential(m, X):
     t_x = X_0
     t_y = X_1
     ok = True
-    out_potential = m.zeros(1)
+    out_potential = m.zeros("potential")
     # (V1) potential energy
     potential_t = gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y + m_star*t_y)
     sums = [0.0] * 1
@@ -3448,10 +3530,10 @@ def _run_condition(m, X):
     valid = True
     reached = True
     clear = True
-    out_H = m.zeros(6)
-    out_lengths = m.zeros(2)
-    out_pivots = m.zeros(2)
-    out_reach = m.zeros(2)
+    out_H = m.zeros("H")
+    out_lengths = m.zeros("lengths")
+    out_pivots = m.zeros("pivots")
+    out_reach = m.zeros("reach")
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
@@ -3543,12 +3625,12 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         spread_t_3,
         ))
-        out_H[[0][leg]] = -w_1_rrr_t
-        out_H[[3][leg]] = w_1_rrr_t_2
-        out_H[[1][leg]] = w_2_rrr_in_base_x
-        out_H[[4][leg]] = w_2_rrr_in_base_y
-        out_pivots[[0][leg]] = least_pivots
-        out_reach[[0][leg]] = disc_1_rrr
+        out_H[_H_rrr[0][leg]] = -w_1_rrr_t
+        out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
+        out_H[_H_rrr[2][leg]] = w_2_rrr_in_base_x
+        out_H[_H_rrr[3][leg]] = w_2_rrr_in_base_y
+        out_pivots[_pivots_rrr[0][leg]] = least_pivots
+        out_reach[_reach_rrr[0][leg]] = disc_1_rrr
     total_rrr, = sums
     sums = [0.0] * 1
     for leg, k in legs[1]:
@@ -3625,10 +3707,10 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         spread_t_6,
         ))
-        out_H[[2][leg]] = -w_1_rrr2_t
-        out_H[[5][leg]] = w_1_rrr2_t_2
-        out_pivots[[1][leg]] = least_pivots_2
-        out_reach[[1][leg]] = disc_1_rrr2
+        out_H[_H_rrr2[0][leg]] = -w_1_rrr2_t
+        out_H[_H_rrr2[1][leg]] = w_1_rrr2_t_2
+        out_pivots[_pivots_rrr2[0][leg]] = least_pivots_2
+        out_reach[_reach_rrr2[0][leg]] = disc_1_rrr2
     total_rrr2, = sums
     # (C2) rms distance of the platform points from their centroid
     spread = sqrt(0.5*total_rrr + 0.5*total_rrr2)
@@ -3641,44 +3723,42 @@ _DEFAULT = Parameters()
 
 
 def _steps_M(m, X):
-    M_of_M, = m.run(_run_M, ((2, 2),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
     return (M_of_M,)
 
 
 def _steps_Z(m, X, V):
-    Z_of_Z, = m.run(_run_Z, ((2,),), X, V)
+    Z_of_Z, = m.run(_run_Z, ("Z",), X, V)
     return (Z_of_Z,)
 
 
 def _steps_H(m, X):
-    H_of_H, = m.run(_run_H, ((2, 3),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 
 def _steps_inverse_kinematics(m, X):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((4,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     return (q_of_inverse_kinematics,)
 
 
 def _steps_joint_rates(m, X, V):
-    qd_of_joint_rates, = m.run(_run_joint_rates, ((4,),), X, V)
+    qd_of_joint_rates, = m.run(_run_joint_rates, ("qd",), X, V)
     return (qd_of_joint_rates,)
 
 
 def _steps_joint_accelerations(m, X, V, A):
-    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ((4,),), X, V, A)
+    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
     return (qdd_of_joint_accelerations,)
 
 
 def _steps_dynamics(m, X, V):
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((2, 2), (2,), (2, 3)), X, V)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
 
 
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
-    required_of_required, H_of_required = m.run(_run_required, ((2,), (2, 3)), X, V, A)
+    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     inverse_root_3 = 1.0 / np.sqrt(weights)
@@ -3689,9 +3769,7 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((2, 2), (2,), (2, 3)), X, V)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
     extend_2 = wrench
     add_3 = times_1 + extend_2
@@ -3706,25 +3784,25 @@ def _steps_complete_acceleration(m, X, V, A, wrench):
 
 
 def _steps_leg_reactions(m, X, V, A, wrench):
-    required_of_required, H_of_required = m.run(_run_required, ((2,), (2, 3)), X, V, A)
+    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     least_norm_3 = _least_norm(H_of_required, subtract_2)
-    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ((2, 3), (3, 3)), X, V, A)
+    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
     add_forces_4 = _with_forces(leg_force_of_legs, least_norm_3, drive_of_legs, [0, 0, 1])
     return (add_forces_4,)
 
 
 def _steps_energy(m, X, V):
-    M_of_M, = m.run(_run_M, ((2, 2),), X)
-    potential_of_potential, = m.run(_run_potential, ((1,),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
+    potential_of_potential, = m.run(_run_potential, ("potential",), X)
     half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
     entry_2 = potential_of_potential[0]
     return (half_form_1, entry_2,)
 
 
 def _steps_null_space(m, X):
-    H_of_H, = m.run(_run_H, ((2, 3),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     null_basis_1 = _null_basis(H_of_H, 2)
     return (null_basis_1,)
 
@@ -3732,13 +3810,13 @@ def _steps_null_space(m, X):
 def _steps_condition(m, X, length):
     (
     H_of_condition, lengths_of_condition, pivots_of_condition, reach_of_condition,
-    ) = m.run(_run_condition, ((2, 3), (2,), (2,), (2,)), X)
+    ) = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
     singular_values_1 = _singular_values(H_of_condition)
     return (singular_values_1, pivots_of_condition,)
 
 
 def _steps_mismatch(m, X, q_actuated):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((4,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     take_1 = q_of_inverse_kinematics[0:3]
     subtract_2 = q_actuated - take_1
     wrap_turns_3 = _wrapped(subtract_2, [0, 1, 2])
@@ -3746,7 +3824,7 @@ def _steps_mismatch(m, X, q_actuated):
 
 
 def _steps_slope(m, X):
-    H_of_H, = m.run(_run_H, ((2, 3),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 

@@ -67,6 +67,64 @@ NJ = 24
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
 
+_SHAPES = {  # of the arrays that functions give
+    "M": (6, 6),
+    "Z": (6,),
+    "H": (6, 6),
+    "required": (6,),
+    "q": (24,),
+    "qd": (24,),
+    "qdd": (24,),
+    "leg_force": (6, 6),
+    "drive": (6, 6),
+    "potential": (1,),
+    "lengths": (2,),
+    "pivots": (6,),
+    "reach": (6,),
+}
+# Where the entries of a leg type's legs stand in these arrays, row by row.
+_H_upru = (
+    [0, 1, 2, 3, 4, 5],
+    [6, 7, 8, 9, 10, 11],
+    [12, 13, 14, 15, 16, 17],
+    [18, 19, 20, 21, 22, 23],
+    [24, 25, 26, 27, 28, 29],
+    [30, 31, 32, 33, 34, 35],
+)
+_q_upru = (
+    [0, 4, 8, 12, 16, 20],
+    [1, 5, 9, 13, 17, 21],
+    [2, 6, 10, 14, 18, 22],
+    [3, 7, 11, 15, 19, 23],
+)
+_qd_upru = (
+    [0, 4, 8, 12, 16, 20],
+    [1, 5, 9, 13, 17, 21],
+    [2, 6, 10, 14, 18, 22],
+    [3, 7, 11, 15, 19, 23],
+)
+_qdd_upru = (
+    [0, 4, 8, 12, 16, 20],
+    [1, 5, 9, 13, 17, 21],
+    [2, 6, 10, 14, 18, 22],
+    [3, 7, 11, 15, 19, 23],
+)
+_leg_force_upru = (
+    [0, 6, 12, 18, 24, 30],
+    [1, 7, 13, 19, 25, 31],
+    [2, 8, 14, 20, 26, 32],
+    [3, 9, 15, 21, 27, 33],
+    [4, 10, 16, 22, 28, 34],
+    [5, 11, 17, 23, 29, 35],
+)
+_drive_upru = (
+    [0, 6, 12, 18, 24, 30],
+    [1, 7, 13, 19, 25, 31],
+    [2, 8, 14, 20, 26, 32],
+)
+_pivots_upru = (
+    [0, 1, 2, 3, 4, 5],
+)
 _DRIVEN_JOINTS = (2, 6, 10, 14, 18, 22)
 
 _DEFAULTS = {
@@ -410,6 +468,7 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _upru = 6
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     gravity_z = p.gravity[2]
@@ -583,19 +642,19 @@ def _prepare(p):
     upru_base_frame_xz*upru_base_point_x + upru_base_frame_yz*upru_base_point_y +
         upru_base_frame_zz*upru_base_point_z
     )
-    total_upru = np.sum(np.broadcast_to(upru_link4_mass, 6))
-    total_upru_x = np.sum(np.broadcast_to(h_star_t_4, 6))
-    total_upru_y = np.sum(np.broadcast_to(h_star_t_5, 6))
-    total_upru_z = np.sum(np.broadcast_to(h_star_t_6, 6))
-    total_upru_xx = np.sum(np.broadcast_to(J_star_t_15, 6))
-    total_upru_xy = np.sum(np.broadcast_to(J_star_t_16, 6))
-    total_upru_xz = np.sum(np.broadcast_to(J_star_t_17, 6))
-    total_upru_yy = np.sum(np.broadcast_to(J_star_t_18, 6))
-    total_upru_yz = np.sum(np.broadcast_to(J_star_t_19, 6))
-    total_upru_zz = np.sum(np.broadcast_to(J_star_t_20, 6))
-    total_upru_x_2 = np.sum(np.broadcast_to(upru_platform_point_x, 6))
-    total_upru_y_2 = np.sum(np.broadcast_to(upru_platform_point_y, 6))
-    total_upru_z_2 = np.sum(np.broadcast_to(upru_platform_point_z, 6))
+    total_upru = np.sum(np.broadcast_to(upru_link4_mass, _upru))
+    total_upru_x = np.sum(np.broadcast_to(h_star_t_4, _upru))
+    total_upru_y = np.sum(np.broadcast_to(h_star_t_5, _upru))
+    total_upru_z = np.sum(np.broadcast_to(h_star_t_6, _upru))
+    total_upru_xx = np.sum(np.broadcast_to(J_star_t_15, _upru))
+    total_upru_xy = np.sum(np.broadcast_to(J_star_t_16, _upru))
+    total_upru_xz = np.sum(np.broadcast_to(J_star_t_17, _upru))
+    total_upru_yy = np.sum(np.broadcast_to(J_star_t_18, _upru))
+    total_upru_yz = np.sum(np.broadcast_to(J_star_t_19, _upru))
+    total_upru_zz = np.sum(np.broadcast_to(J_star_t_20, _upru))
+    total_upru_x_2 = np.sum(np.broadcast_to(upru_platform_point_x, _upru))
+    total_upru_y_2 = np.sum(np.broadcast_to(upru_platform_point_y, _upru))
+    total_upru_z_2 = np.sum(np.broadcast_to(upru_platform_point_z, _upru))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_upru
     # (L2) first moment about the platform origin
@@ -627,7 +686,7 @@ def _prepare(p):
                 J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x,
                 h_star_y, h_star_z, m_star,),
             (
-                (6,
+                (_upru,
         (J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_2_zz, J_4_xx, J_4_xy, J_4_xz, J_4_yy, J_4_yz, J_4_zz,
                     Jc_2_xx, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, Sigma_4_xx, Sigma_4_yy,
                     Sigma_4_zz, branch_1, branch_2, branch_4, g_r0_x, g_r0_y, g_r0_z, h_2_x,
@@ -645,7 +704,7 @@ def _prepare(p):
         (J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
                 h_star_z, m_star,),
             (
-                (6,
+                (_upru,
         (J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_2_zz, J_4_xx, J_4_xy, J_4_xz, J_4_yy, J_4_yz, J_4_zz,
                     Jc_2_xx, branch_1, branch_2, branch_4, h_4_x, h_4_y, h_4_z,
                     upru_base_frame_xx, upru_base_frame_xy, upru_base_frame_xz,
@@ -661,7 +720,7 @@ def _prepare(p):
         (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2,
                 Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
             (
-                (6,
+                (_upru,
         (J_2_xy, J_2_xz, J_2_yz, J_4_xy, J_4_xz, J_4_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz,
                     Sigma_4_xx, Sigma_4_yy, Sigma_4_zz, branch_1, branch_2, branch_4, g_r0_x,
                     g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_4_x, h_4_y, h_4_z, upru_base_frame_xx,
@@ -677,7 +736,7 @@ def _prepare(p):
         "H": (
         (),
             (
-                (6,
+                (_upru,
         (branch_2, upru_base_frame_xx, upru_base_frame_xy, upru_base_frame_xz, upru_base_frame_yx,
                     upru_base_frame_yy, upru_base_frame_yz, upru_base_frame_zx,
                     upru_base_frame_zy, upru_base_frame_zz, upru_base_point_x, upru_base_point_y,
@@ -690,7 +749,7 @@ def _prepare(p):
         (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
                 gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
-                (6,
+                (_upru,
         (J_2_xy, J_2_xz, J_2_yz, J_4_xy, J_4_xz, J_4_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz,
                     Sigma_4_xx, Sigma_4_yy, Sigma_4_zz, branch_1, branch_2, branch_4, g_r0_x,
                     g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_4_x, h_4_y, h_4_z, upru_base_frame_xx,
@@ -706,7 +765,7 @@ def _prepare(p):
         "inverse_kinematics": (
         (),
             (
-                (6,
+                (_upru,
         (branch_1, branch_2, branch_4, upru_base_frame_xx, upru_base_frame_xy, upru_base_frame_xz,
                     upru_base_frame_yx, upru_base_frame_yy, upru_base_frame_yz,
                     upru_base_frame_zx, upru_base_frame_zy, upru_base_frame_zz, upru_base_point_x,
@@ -719,7 +778,7 @@ def _prepare(p):
         "joint_rates": (
         (),
             (
-                (6,
+                (_upru,
         (branch_1, branch_2, branch_4, upru_base_frame_xx, upru_base_frame_xy, upru_base_frame_xz,
                     upru_base_frame_yx, upru_base_frame_yy, upru_base_frame_yz,
                     upru_base_frame_zx, upru_base_frame_zy, upru_base_frame_zz, upru_base_point_x,
@@ -732,7 +791,7 @@ def _prepare(p):
         "joint_accelerations": (
         (),
             (
-                (6,
+                (_upru,
         (branch_1, branch_2, branch_4, upru_base_frame_xx, upru_base_frame_xy, upru_base_frame_xz,
                     upru_base_frame_yx, upru_base_frame_yy, upru_base_frame_yz,
                     upru_base_frame_zx, upru_base_frame_zy, upru_base_frame_zz, upru_base_point_x,
@@ -745,7 +804,7 @@ def _prepare(p):
         "legs": (
         (gravity_x, gravity_y, gravity_z,),
             (
-                (6,
+                (_upru,
         (J_2_xy, J_2_xz, J_2_yz, J_4_xy, J_4_xz, J_4_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz,
                     Sigma_4_xx, Sigma_4_yy, Sigma_4_zz, branch_1, branch_2, branch_4, g_r0_x,
                     g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_4_x, h_4_y, h_4_z, upru_base_frame_xx,
@@ -761,7 +820,7 @@ def _prepare(p):
         "potential": (
         (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
-                (6,
+                (_upru,
         (b_r0_x, b_r0_y, b_r0_z, branch_1, branch_2, branch_4, g_r0_x, g_r0_y, g_r0_z, h_2_x,
                     h_2_y, h_2_z, h_4_x, h_4_y, h_4_z, upru_base_frame_xx, upru_base_frame_xy,
                     upru_base_frame_xz, upru_base_frame_yx, upru_base_frame_yy,
@@ -776,7 +835,7 @@ def _prepare(p):
         "condition": (
         (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
             (
-                (6,
+                (_upru,
         (branch_1, branch_2, branch_4, upru_base_frame_xx, upru_base_frame_xy, upru_base_frame_xz,
                     upru_base_frame_yx, upru_base_frame_yy, upru_base_frame_yz,
                     upru_base_frame_zx, upru_base_frame_zy, upru_base_frame_zz, upru_base_point_x,
@@ -826,16 +885,16 @@ class _Floats:
         """Shared values, and (leg, its values) for every leg of each loop."""
         return _constants(self.p, name)[:2]
 
-    def zeros(self, size):
-        return [0.0] * size
+    def zeros(self, name):
+        return [0.0] * math.prod(_SHAPES[name])
 
     def added(self, sums, leg, terms):
         """Sums over the legs so far."""
         return [a + b for a, b in zip(sums, terms)]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(shape)), np.nan) for shape in shapes]
+        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
         for k in range(self.states):
             try:
@@ -845,7 +904,7 @@ class _Floats:
             if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
                 for a, array in zip(found, arrays):
                     a[k] = array
-        return [a.T.reshape(*shape, self.states) for a, shape in zip(found, shapes)]
+        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
 
 
 class _Arrays:
@@ -861,8 +920,8 @@ class _Arrays:
         shared, _, columns = _constants(self.p, name)
         return shared, columns
 
-    def zeros(self, size):
-        return np.zeros((size, self.states))
+    def zeros(self, name):
+        return np.zeros((math.prod(_SHAPES[name]), self.states))
 
     def every(self, good):
         """Whether it holds for all legs."""
@@ -873,7 +932,7 @@ class _Arrays:
         shape = (legs.stop, self.states)
         return [np.add.reduce(np.broadcast_to(t, shape), axis=0) for t in terms]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
         ok, arrays = function(self, *vectors)
         for a in arrays:
@@ -881,7 +940,7 @@ class _Arrays:
         if not np.all(ok):
             for a in arrays:
                 a[:, ~ok] = np.nan
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
 
 class _Judged(_Arrays):
@@ -891,12 +950,12 @@ class _Judged(_Arrays):
         super().__init__(p, states)
         self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
         (valid, reached, clear), arrays = function(self, *vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
             self.failed[code] |= ~np.broadcast_to(good, self.states)
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -1292,9 +1351,9 @@ def _run_dynamics(m, X, V):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_M = m.zeros(36)
-    out_Z = m.zeros(6)
-    out_H = m.zeros(36)
+    out_M = m.zeros("M")
+    out_Z = m.zeros("Z")
+    out_H = m.zeros("H")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -1889,12 +1948,12 @@ def _run_dynamics(m, X, V):
             M_aa_t_2, M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6, U_in_base_x, U_in_base_y,
             U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,
         ))
-        out_H[[0, 1, 2, 3, 4, 5][leg]] = axis_z_x
-        out_H[[6, 7, 8, 9, 10, 11][leg]] = axis_z_y
-        out_H[[12, 13, 14, 15, 16, 17][leg]] = axis_z_z
-        out_H[[18, 19, 20, 21, 22, 23][leg]] = H_a_3_t
-        out_H[[24, 25, 26, 27, 28, 29][leg]] = H_a_3_t_2
-        out_H[[30, 31, 32, 33, 34, 35][leg]] = H_a_3_t_3
+        out_H[_H_upru[0][leg]] = axis_z_x
+        out_H[_H_upru[1][leg]] = axis_z_y
+        out_H[_H_upru[2][leg]] = axis_z_z
+        out_H[_H_upru[3][leg]] = H_a_3_t
+        out_H[_H_upru[4][leg]] = H_a_3_t_2
+        out_H[_H_upru[5][leg]] = H_a_3_t_3
     (
     total_upru_xx, total_upru_xy, total_upru_xz, total_upru_yy, total_upru_yz, total_upru_zz,
         total_upru_xx_2, total_upru_xy_2, total_upru_xz_2, total_upru_yx, total_upru_yy_2,
@@ -2017,7 +2076,7 @@ def _run_M(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_M = m.zeros(36)
+    out_M = m.zeros("M")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -2508,7 +2567,7 @@ def _run_Z(m, X, V):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_Z = m.zeros(6)
+    out_Z = m.zeros("Z")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -2939,7 +2998,7 @@ def _run_H(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_H = m.zeros(36)
+    out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
         branch_2, upru_base_frame_xx, upru_base_frame_xy, upru_base_frame_xz, upru_base_frame_yx,
@@ -2986,12 +3045,12 @@ def _run_H(m, X):
         ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
             _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8))
         )
-        out_H[[0, 1, 2, 3, 4, 5][leg]] = axis_z_x
-        out_H[[6, 7, 8, 9, 10, 11][leg]] = axis_z_y
-        out_H[[12, 13, 14, 15, 16, 17][leg]] = axis_z_z
-        out_H[[18, 19, 20, 21, 22, 23][leg]] = H_a_3_t
-        out_H[[24, 25, 26, 27, 28, 29][leg]] = H_a_3_t_2
-        out_H[[30, 31, 32, 33, 34, 35][leg]] = H_a_3_t_3
+        out_H[_H_upru[0][leg]] = axis_z_x
+        out_H[_H_upru[1][leg]] = axis_z_y
+        out_H[_H_upru[2][leg]] = axis_z_z
+        out_H[_H_upru[3][leg]] = H_a_3_t
+        out_H[_H_upru[4][leg]] = H_a_3_t_2
+        out_H[_H_upru[5][leg]] = H_a_3_t_3
     return ok, (out_H,)
 
 
@@ -3065,8 +3124,8 @@ def _run_required(m, X, V, A):
     alpha_z = A_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_required = m.zeros(6)
-    out_H = m.zeros(36)
+    out_required = m.zeros("required")
+    out_H = m.zeros("H")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -3477,12 +3536,12 @@ def _run_required(m, X, V, A):
         sums = m.added(sums, leg, (
         c_in_base_x, c_in_base_y, c_in_base_z, R_a_t, R_a_t_2, R_a_t_3,
         ))
-        out_H[[0, 1, 2, 3, 4, 5][leg]] = axis_z_x
-        out_H[[6, 7, 8, 9, 10, 11][leg]] = axis_z_y
-        out_H[[12, 13, 14, 15, 16, 17][leg]] = axis_z_z
-        out_H[[18, 19, 20, 21, 22, 23][leg]] = H_a_3_t
-        out_H[[24, 25, 26, 27, 28, 29][leg]] = H_a_3_t_2
-        out_H[[30, 31, 32, 33, 34, 35][leg]] = H_a_3_t_3
+        out_H[_H_upru[0][leg]] = axis_z_x
+        out_H[_H_upru[1][leg]] = axis_z_y
+        out_H[_H_upru[2][leg]] = axis_z_z
+        out_H[_H_upru[3][leg]] = H_a_3_t
+        out_H[_H_upru[4][leg]] = H_a_3_t_2
+        out_H[_H_upru[5][leg]] = H_a_3_t_3
     (
     total_upru_x, total_upru_y, total_upru_z, total_upru_x_2, total_upru_y_2, total_upru_z_2,
     ) = sums
@@ -3544,7 +3603,7 @@ def _run_inverse_kinematics(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_q = m.zeros(24)
+    out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
         branch_1, branch_2, branch_4, upru_base_frame_xx, upru_base_frame_xy, upru_base_frame_xz,
@@ -3636,10 +3695,10 @@ def _run_inverse_kinematics(m, X):
             _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_4) > _TOLERANCE * _TOLERANCE
             * 1.0))
         )
-        out_q[[0, 4, 8, 12, 16, 20][leg]] = q_1
-        out_q[[1, 5, 9, 13, 17, 21][leg]] = q_2
-        out_q[[2, 6, 10, 14, 18, 22][leg]] = root_2
-        out_q[[3, 7, 11, 15, 19, 23][leg]] = q_4
+        out_q[_q_upru[0][leg]] = q_1
+        out_q[_q_upru[1][leg]] = q_2
+        out_q[_q_upru[2][leg]] = root_2
+        out_q[_q_upru[3][leg]] = q_4
     return ok, (out_q,)
 
 
@@ -3696,7 +3755,7 @@ def _run_joint_rates(m, X, V):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_qd = m.zeros(24)
+    out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
         branch_1, branch_2, branch_4, upru_base_frame_xx, upru_base_frame_xy, upru_base_frame_xz,
@@ -3850,10 +3909,10 @@ def _run_joint_rates(m, X, V):
             * 1.0) & (abs(-end_p1_r5_x) > _TOLERANCE * 1.0) & (abs(root_2) > _TOLERANCE * 0.8) &
             (abs(v_1_r0_y) > _TOLERANCE * 0.8))
         )
-        out_qd[[0, 4, 8, 12, 16, 20][leg]] = qd_1_t
-        out_qd[[1, 5, 9, 13, 17, 21][leg]] = qd_1_t_2
-        out_qd[[2, 6, 10, 14, 18, 22][leg]] = S_dot_r3_x
-        out_qd[[3, 7, 11, 15, 19, 23][leg]] = qd_1_t_3
+        out_qd[_qd_upru[0][leg]] = qd_1_t
+        out_qd[_qd_upru[1][leg]] = qd_1_t_2
+        out_qd[_qd_upru[2][leg]] = S_dot_r3_x
+        out_qd[_qd_upru[3][leg]] = qd_1_t_3
     return ok, (out_qd,)
 
 
@@ -3923,7 +3982,7 @@ def _run_joint_accelerations(m, X, V, A):
     alpha_z = A_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_qdd = m.zeros(24)
+    out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
         branch_1, branch_2, branch_4, upru_base_frame_xx, upru_base_frame_xy, upru_base_frame_xz,
@@ -4156,10 +4215,10 @@ def _run_joint_accelerations(m, X, V, A):
             * 1.0) & (abs(-end_p1_r5_x) > _TOLERANCE * 1.0) & (abs(root_2) > _TOLERANCE * 0.8) &
             (abs(v_1_r0_y) > _TOLERANCE * 0.8))
         )
-        out_qdd[[0, 4, 8, 12, 16, 20][leg]] = qdd_1_t
-        out_qdd[[1, 5, 9, 13, 17, 21][leg]] = -qdd_1_t_2
-        out_qdd[[2, 6, 10, 14, 18, 22][leg]] = rel_z
-        out_qdd[[3, 7, 11, 15, 19, 23][leg]] = -qdd_1_t_3
+        out_qdd[_qdd_upru[0][leg]] = qdd_1_t
+        out_qdd[_qdd_upru[1][leg]] = -qdd_1_t_2
+        out_qdd[_qdd_upru[2][leg]] = rel_z
+        out_qdd[_qdd_upru[3][leg]] = -qdd_1_t_3
     return ok, (out_qdd,)
 
 
@@ -4230,8 +4289,8 @@ def _run_legs(m, X, V, A):
     alpha_z = A_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_leg_force = m.zeros(36)
-    out_drive = m.zeros(36)
+    out_leg_force = m.zeros("leg_force")
+    out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
         J_2_xy, J_2_xz, J_2_yz, J_4_xy, J_4_xz, J_4_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz,
@@ -4576,15 +4635,15 @@ def _run_legs(m, X, V, A):
             * 1.0) & (abs(-end_p1_r5_x) > _TOLERANCE * 1.0) & (abs(root_2) > _TOLERANCE * 0.8) &
             (abs(v_1_r0_y) > _TOLERANCE * 0.8))
         )
-        out_leg_force[[0, 6, 12, 18, 24, 30][leg]] = c_true_in_base_x
-        out_leg_force[[1, 7, 13, 19, 25, 31][leg]] = c_true_in_base_y
-        out_leg_force[[2, 8, 14, 20, 26, 32][leg]] = c_true_in_base_z
-        out_leg_force[[3, 9, 15, 21, 27, 33][leg]] = c_m_in_base_x
-        out_leg_force[[4, 10, 16, 22, 28, 34][leg]] = c_m_in_base_y
-        out_leg_force[[5, 11, 17, 23, 29, 35][leg]] = c_m_in_base_z
-        out_drive[[0, 6, 12, 18, 24, 30][leg]] = axis_z_x
-        out_drive[[1, 7, 13, 19, 25, 31][leg]] = axis_z_y
-        out_drive[[2, 8, 14, 20, 26, 32][leg]] = axis_z_z
+        out_leg_force[_leg_force_upru[0][leg]] = c_true_in_base_x
+        out_leg_force[_leg_force_upru[1][leg]] = c_true_in_base_y
+        out_leg_force[_leg_force_upru[2][leg]] = c_true_in_base_z
+        out_leg_force[_leg_force_upru[3][leg]] = c_m_in_base_x
+        out_leg_force[_leg_force_upru[4][leg]] = c_m_in_base_y
+        out_leg_force[_leg_force_upru[5][leg]] = c_m_in_base_z
+        out_drive[_drive_upru[0][leg]] = axis_z_x
+        out_drive[_drive_upru[1][leg]] = axis_z_y
+        out_drive[_drive_upru[2][leg]] = axis_z_z
     return ok, (out_leg_force, out_drive,)
 
 
@@ -4629,7 +4688,7 @@ def _run_potential(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_potential = m.zeros(1)
+    out_potential = m.zeros("potential")
     # (V1) potential energy
     potential_t = (
     gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + m_star*t_x) +
@@ -4791,10 +4850,10 @@ def _run_condition(m, X):
     reached = True
     clear = True
     valid = valid & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_H = m.zeros(36)
-    out_lengths = m.zeros(2)
-    out_pivots = m.zeros(6)
-    out_reach = m.zeros(6)
+    out_H = m.zeros("H")
+    out_lengths = m.zeros("lengths")
+    out_pivots = m.zeros("pivots")
+    out_reach = m.zeros("reach")
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
@@ -4919,13 +4978,13 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         spread_t_5,
         ))
-        out_H[[0, 1, 2, 3, 4, 5][leg]] = axis_z_x
-        out_H[[6, 7, 8, 9, 10, 11][leg]] = axis_z_y
-        out_H[[12, 13, 14, 15, 16, 17][leg]] = axis_z_z
-        out_H[[18, 19, 20, 21, 22, 23][leg]] = H_a_3_t
-        out_H[[24, 25, 26, 27, 28, 29][leg]] = H_a_3_t_2
-        out_H[[30, 31, 32, 33, 34, 35][leg]] = H_a_3_t_3
-        out_pivots[[0, 1, 2, 3, 4, 5][leg]] = least_pivots
+        out_H[_H_upru[0][leg]] = axis_z_x
+        out_H[_H_upru[1][leg]] = axis_z_y
+        out_H[_H_upru[2][leg]] = axis_z_z
+        out_H[_H_upru[3][leg]] = H_a_3_t
+        out_H[_H_upru[4][leg]] = H_a_3_t_2
+        out_H[_H_upru[5][leg]] = H_a_3_t_3
+        out_pivots[_pivots_upru[0][leg]] = least_pivots
     total_upru, = sums
     # (C2) rms distance of the platform points from their centroid
     spread = spread_t*sqrt(total_upru)
@@ -4938,44 +4997,42 @@ _DEFAULT = Parameters()
 
 
 def _steps_M(m, X):
-    M_of_M, = m.run(_run_M, ((6, 6),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
     return (M_of_M,)
 
 
 def _steps_Z(m, X, V):
-    Z_of_Z, = m.run(_run_Z, ((6,),), X, V)
+    Z_of_Z, = m.run(_run_Z, ("Z",), X, V)
     return (Z_of_Z,)
 
 
 def _steps_H(m, X):
-    H_of_H, = m.run(_run_H, ((6, 6),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 
 def _steps_inverse_kinematics(m, X):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((24,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     return (q_of_inverse_kinematics,)
 
 
 def _steps_joint_rates(m, X, V):
-    qd_of_joint_rates, = m.run(_run_joint_rates, ((24,),), X, V)
+    qd_of_joint_rates, = m.run(_run_joint_rates, ("qd",), X, V)
     return (qd_of_joint_rates,)
 
 
 def _steps_joint_accelerations(m, X, V, A):
-    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ((24,),), X, V, A)
+    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
     return (qdd_of_joint_accelerations,)
 
 
 def _steps_dynamics(m, X, V):
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((6, 6), (6,), (6, 6)), X, V)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
 
 
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
-    required_of_required, H_of_required = m.run(_run_required, ((6,), (6, 6)), X, V, A)
+    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     solve_3 = _solve(H_of_required, subtract_2)
@@ -4983,9 +5040,7 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((6, 6), (6,), (6, 6)), X, V)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
     extend_2 = wrench
     add_3 = times_1 + extend_2
@@ -5000,25 +5055,25 @@ def _steps_complete_acceleration(m, X, V, A, wrench):
 
 
 def _steps_leg_reactions(m, X, V, A, wrench):
-    required_of_required, H_of_required = m.run(_run_required, ((6,), (6, 6)), X, V, A)
+    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     solve_3 = _solve(H_of_required, subtract_2)
-    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ((6, 6), (6, 6)), X, V, A)
+    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
     add_forces_4 = _with_forces(leg_force_of_legs, solve_3, drive_of_legs, [0, 1, 2, 3, 4, 5])
     return (add_forces_4,)
 
 
 def _steps_energy(m, X, V):
-    M_of_M, = m.run(_run_M, ((6, 6),), X)
-    potential_of_potential, = m.run(_run_potential, ((1,),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
+    potential_of_potential, = m.run(_run_potential, ("potential",), X)
     half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
     entry_2 = potential_of_potential[0]
     return (half_form_1, entry_2,)
 
 
 def _steps_null_space(m, X):
-    H_of_H, = m.run(_run_H, ((6, 6),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     null_basis_1 = _null_basis(H_of_H, 6)
     return (null_basis_1,)
 
@@ -5026,7 +5081,7 @@ def _steps_null_space(m, X):
 def _steps_condition(m, X, length):
     (
     H_of_condition, lengths_of_condition, pivots_of_condition, reach_of_condition,
-    ) = m.run(_run_condition, ((6, 6), (2,), (6,), (6,)), X)
+    ) = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
     choose_length_1 = _chosen_length(lengths_of_condition, length)
     divide_rows_2 = _rows_divided(H_of_condition, choose_length_1, [3, 4, 5])
     singular_values_3 = _singular_values(divide_rows_2)
@@ -5034,14 +5089,14 @@ def _steps_condition(m, X, length):
 
 
 def _steps_mismatch(m, X, q_actuated):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((24,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     take_1 = q_of_inverse_kinematics[[2, 6, 10, 14, 18, 22]]
     subtract_2 = q_actuated - take_1
     return (subtract_2,)
 
 
 def _steps_slope(m, X):
-    H_of_H, = m.run(_run_H, ((6, 6),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 

@@ -67,6 +67,58 @@ NJ = 18
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
 
+_SHAPES = {  # of the arrays that functions give
+    "M": (6, 6),
+    "Z": (6,),
+    "H": (6, 6),
+    "required": (6,),
+    "q": (18,),
+    "qd": (18,),
+    "qdd": (18,),
+    "leg_force": (6, 3),
+    "drive": (6, 3),
+    "potential": (1,),
+    "lengths": (2,),
+    "pivots": (6,),
+    "reach": (6,),
+}
+# Where the entries of a leg type's legs stand in these arrays, row by row.
+_H_uhs = (
+    [0, 1, 2, 3, 4, 5],
+    [6, 7, 8, 9, 10, 11],
+    [12, 13, 14, 15, 16, 17],
+    [18, 19, 20, 21, 22, 23],
+    [24, 25, 26, 27, 28, 29],
+    [30, 31, 32, 33, 34, 35],
+)
+_q_uhs = (
+    [0, 3, 6, 9, 12, 15],
+    [1, 4, 7, 10, 13, 16],
+    [2, 5, 8, 11, 14, 17],
+)
+_qd_uhs = (
+    [0, 3, 6, 9, 12, 15],
+    [1, 4, 7, 10, 13, 16],
+    [2, 5, 8, 11, 14, 17],
+)
+_qdd_uhs = (
+    [0, 3, 6, 9, 12, 15],
+    [1, 4, 7, 10, 13, 16],
+    [2, 5, 8, 11, 14, 17],
+)
+_leg_force_uhs = (
+    [0, 3, 6, 9, 12, 15],
+    [1, 4, 7, 10, 13, 16],
+    [2, 5, 8, 11, 14, 17],
+)
+_drive_uhs = (
+    [0, 3, 6, 9, 12, 15],
+    [1, 4, 7, 10, 13, 16],
+    [2, 5, 8, 11, 14, 17],
+)
+_pivots_uhs = (
+    [0, 1, 2, 3, 4, 5],
+)
 _DRIVEN_JOINTS = (2, 5, 8, 11, 14, 17)
 
 _DEFAULTS = {
@@ -429,6 +481,7 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _uhs = 6
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     gravity_z = p.gravity[2]
@@ -608,20 +661,20 @@ def _prepare(p):
     inv_size_t_3 = 1.0/size_t
     # (uhs-V7) reciprocal vector 1
     inv_size = 1.0/size
-    total_uhs = np.sum(np.broadcast_to(uhs_link3_mass, 6))
-    total_uhs_x = np.sum(np.broadcast_to(h_star_t_4, 6))
-    total_uhs_y = np.sum(np.broadcast_to(h_star_t_5, 6))
-    total_uhs_z = np.sum(np.broadcast_to(h_star_t_6, 6))
-    total_uhs_xx = np.sum(np.broadcast_to(J_star_t_15, 6))
-    total_uhs_xy = np.sum(np.broadcast_to(J_star_t_16, 6))
-    total_uhs_xz = np.sum(np.broadcast_to(J_star_t_17, 6))
-    total_uhs_yy = np.sum(np.broadcast_to(J_star_t_18, 6))
-    total_uhs_yz = np.sum(np.broadcast_to(J_star_t_19, 6))
-    total_uhs_zz = np.sum(np.broadcast_to(J_star_t_20, 6))
-    total_uhs_x_2 = np.sum(np.broadcast_to(uhs_platform_point_x, 6))
-    total_uhs_y_2 = np.sum(np.broadcast_to(uhs_platform_point_y, 6))
-    total_uhs_z_2 = np.sum(np.broadcast_to(uhs_platform_point_z, 6))
-    total_uhs_2 = np.sum(np.broadcast_to(size_t, 6))
+    total_uhs = np.sum(np.broadcast_to(uhs_link3_mass, _uhs))
+    total_uhs_x = np.sum(np.broadcast_to(h_star_t_4, _uhs))
+    total_uhs_y = np.sum(np.broadcast_to(h_star_t_5, _uhs))
+    total_uhs_z = np.sum(np.broadcast_to(h_star_t_6, _uhs))
+    total_uhs_xx = np.sum(np.broadcast_to(J_star_t_15, _uhs))
+    total_uhs_xy = np.sum(np.broadcast_to(J_star_t_16, _uhs))
+    total_uhs_xz = np.sum(np.broadcast_to(J_star_t_17, _uhs))
+    total_uhs_yy = np.sum(np.broadcast_to(J_star_t_18, _uhs))
+    total_uhs_yz = np.sum(np.broadcast_to(J_star_t_19, _uhs))
+    total_uhs_zz = np.sum(np.broadcast_to(J_star_t_20, _uhs))
+    total_uhs_x_2 = np.sum(np.broadcast_to(uhs_platform_point_x, _uhs))
+    total_uhs_y_2 = np.sum(np.broadcast_to(uhs_platform_point_y, _uhs))
+    total_uhs_z_2 = np.sum(np.broadcast_to(uhs_platform_point_z, _uhs))
+    total_uhs_2 = np.sum(np.broadcast_to(size_t, _uhs))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_uhs
     # (L2) first moment about the platform origin
@@ -655,7 +708,7 @@ def _prepare(p):
                 J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x,
                 h_star_y, h_star_z, m_star,),
             (
-                (6,
+                (_uhs,
         (J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_2_zz, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz, J_3_zz,
                     Jc_2_xx, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy,
                     Sigma_3_zz, branch_1, branch_2, d_G_t, d_phi_3_t, d_phi_3_t_2, g_r0_x, g_r0_y,
@@ -673,7 +726,7 @@ def _prepare(p):
         (J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
                 h_star_z, m_star,),
             (
-                (6,
+                (_uhs,
         (J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_2_zz, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz, J_3_zz,
                     Jc_2_xx, branch_1, branch_2, d_G_t, d_phi_3_t, d_phi_3_t_2, h_3_x, h_3_y,
                     h_3_z, inv_uhs_joint3_pitch, size, size_t, uhs_base_frame_xx,
@@ -689,7 +742,7 @@ def _prepare(p):
         (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2,
                 Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
             (
-                (6,
+                (_uhs,
         (J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz,
                     Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2, g_r0_x, g_r0_y,
                     g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, inv_uhs_joint3_pitch, size,
@@ -705,7 +758,7 @@ def _prepare(p):
         "H": (
         (),
             (
-                (6,
+                (_uhs,
         (branch_2, inv_uhs_joint3_pitch, size, size_t, uhs_base_frame_xx, uhs_base_frame_xy,
                     uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz,
                     uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x,
@@ -718,7 +771,7 @@ def _prepare(p):
         (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
                 gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
-                (6,
+                (_uhs,
         (J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz,
                     Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2, g_r0_x, g_r0_y,
                     g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, inv_uhs_joint3_pitch, size,
@@ -734,7 +787,7 @@ def _prepare(p):
         "inverse_kinematics": (
         (),
             (
-                (6,
+                (_uhs,
         (branch_1, branch_2, inv_uhs_joint3_pitch, size_t, uhs_base_frame_xx, uhs_base_frame_xy,
                     uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz,
                     uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x,
@@ -747,7 +800,7 @@ def _prepare(p):
         "joint_rates": (
         (),
             (
-                (6,
+                (_uhs,
         (branch_1, branch_2, inv_uhs_joint3_pitch, size, size_t, uhs_base_frame_xx,
                     uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy,
                     uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz,
@@ -760,7 +813,7 @@ def _prepare(p):
         "joint_accelerations": (
         (),
             (
-                (6,
+                (_uhs,
         (branch_1, branch_2, inv_uhs_joint3_pitch, size, size_t, uhs_base_frame_xx,
                     uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy,
                     uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz,
@@ -773,7 +826,7 @@ def _prepare(p):
         "legs": (
         (gravity_x, gravity_y, gravity_z,),
             (
-                (6,
+                (_uhs,
         (J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz,
                     Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2, g_r0_x, g_r0_y,
                     g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, inv_uhs_joint3_pitch, size,
@@ -789,7 +842,7 @@ def _prepare(p):
         "potential": (
         (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
-                (6,
+                (_uhs,
         (b_r0_x, b_r0_y, b_r0_z, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z,
                     h_3_x, h_3_y, h_3_z, inv_uhs_joint3_pitch, size_t, uhs_base_frame_xx,
                     uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy,
@@ -803,7 +856,7 @@ def _prepare(p):
         "condition": (
         (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
             (
-                (6,
+                (_uhs,
         (branch_1, branch_2, inv_size, inv_size_t_3, inv_uhs_joint3_pitch, size, size_t,
                     uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx,
                     uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy,
@@ -853,16 +906,16 @@ class _Floats:
         """Shared values, and (leg, its values) for every leg of each loop."""
         return _constants(self.p, name)[:2]
 
-    def zeros(self, size):
-        return [0.0] * size
+    def zeros(self, name):
+        return [0.0] * math.prod(_SHAPES[name])
 
     def added(self, sums, leg, terms):
         """Sums over the legs so far."""
         return [a + b for a, b in zip(sums, terms)]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(shape)), np.nan) for shape in shapes]
+        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
         for k in range(self.states):
             try:
@@ -872,7 +925,7 @@ class _Floats:
             if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
                 for a, array in zip(found, arrays):
                     a[k] = array
-        return [a.T.reshape(*shape, self.states) for a, shape in zip(found, shapes)]
+        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
 
 
 class _Arrays:
@@ -888,8 +941,8 @@ class _Arrays:
         shared, _, columns = _constants(self.p, name)
         return shared, columns
 
-    def zeros(self, size):
-        return np.zeros((size, self.states))
+    def zeros(self, name):
+        return np.zeros((math.prod(_SHAPES[name]), self.states))
 
     def every(self, good):
         """Whether it holds for all legs."""
@@ -900,7 +953,7 @@ class _Arrays:
         shape = (legs.stop, self.states)
         return [np.add.reduce(np.broadcast_to(t, shape), axis=0) for t in terms]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
         ok, arrays = function(self, *vectors)
         for a in arrays:
@@ -908,7 +961,7 @@ class _Arrays:
         if not np.all(ok):
             for a in arrays:
                 a[:, ~ok] = np.nan
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
 
 class _Judged(_Arrays):
@@ -918,12 +971,12 @@ class _Judged(_Arrays):
         super().__init__(p, states)
         self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
         (valid, reached, clear), arrays = function(self, *vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
             self.failed[code] |= ~np.broadcast_to(good, self.states)
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -1321,9 +1374,9 @@ def _run_dynamics(m, X, V):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_M = m.zeros(36)
-    out_Z = m.zeros(6)
-    out_H = m.zeros(36)
+    out_M = m.zeros("M")
+    out_Z = m.zeros("Z")
+    out_H = m.zeros("H")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -1758,12 +1811,12 @@ def _run_dynamics(m, X, V):
             M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6, U_in_base_x, U_in_base_y, U_in_base_z,
             Z_a_t, Z_a_t_2, Z_a_t_3,
         ))
-        out_H[[0, 1, 2, 3, 4, 5][leg]] = w_3_t
-        out_H[[6, 7, 8, 9, 10, 11][leg]] = w_3_t_2
-        out_H[[12, 13, 14, 15, 16, 17][leg]] = w_3_t_3
-        out_H[[18, 19, 20, 21, 22, 23][leg]] = H_a_3_x
-        out_H[[24, 25, 26, 27, 28, 29][leg]] = H_a_3_y
-        out_H[[30, 31, 32, 33, 34, 35][leg]] = H_a_3_z
+        out_H[_H_uhs[0][leg]] = w_3_t
+        out_H[_H_uhs[1][leg]] = w_3_t_2
+        out_H[_H_uhs[2][leg]] = w_3_t_3
+        out_H[_H_uhs[3][leg]] = H_a_3_x
+        out_H[_H_uhs[4][leg]] = H_a_3_y
+        out_H[_H_uhs[5][leg]] = H_a_3_z
     (
     total_uhs_xx, total_uhs_xy, total_uhs_xz, total_uhs_yy, total_uhs_yz, total_uhs_zz,
         total_uhs_xx_2, total_uhs_xy_2, total_uhs_xz_2, total_uhs_yx, total_uhs_yy_2,
@@ -1888,7 +1941,7 @@ def _run_M(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_M = m.zeros(36)
+    out_M = m.zeros("M")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -2243,7 +2296,7 @@ def _run_Z(m, X, V):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_Z = m.zeros(6)
+    out_Z = m.zeros("Z")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -2601,7 +2654,7 @@ def _run_H(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_H = m.zeros(36)
+    out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
         branch_2, inv_uhs_joint3_pitch, size, size_t, uhs_base_frame_xx, uhs_base_frame_xy,
@@ -2649,12 +2702,12 @@ def _run_H(m, X):
         ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t) & (abs(rho2_2) > _TOLERANCE
             * _TOLERANCE * size_t) & (abs(root_2) > _TOLERANCE * size))
         )
-        out_H[[0, 1, 2, 3, 4, 5][leg]] = w_3_t
-        out_H[[6, 7, 8, 9, 10, 11][leg]] = w_3_t_2
-        out_H[[12, 13, 14, 15, 16, 17][leg]] = w_3_t_3
-        out_H[[18, 19, 20, 21, 22, 23][leg]] = H_a_3_x
-        out_H[[24, 25, 26, 27, 28, 29][leg]] = H_a_3_y
-        out_H[[30, 31, 32, 33, 34, 35][leg]] = H_a_3_z
+        out_H[_H_uhs[0][leg]] = w_3_t
+        out_H[_H_uhs[1][leg]] = w_3_t_2
+        out_H[_H_uhs[2][leg]] = w_3_t_3
+        out_H[_H_uhs[3][leg]] = H_a_3_x
+        out_H[_H_uhs[4][leg]] = H_a_3_y
+        out_H[_H_uhs[5][leg]] = H_a_3_z
     return ok, (out_H,)
 
 
@@ -2730,8 +2783,8 @@ def _run_required(m, X, V, A):
     alpha_z = A_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_required = m.zeros(6)
-    out_H = m.zeros(36)
+    out_required = m.zeros("required")
+    out_H = m.zeros("H")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -3071,12 +3124,12 @@ def _run_required(m, X, V, A):
         sums = m.added(sums, leg, (
         c_in_base_x, c_in_base_y, c_in_base_z, R_a_t, R_a_t_2, R_a_t_3,
         ))
-        out_H[[0, 1, 2, 3, 4, 5][leg]] = w_3_t
-        out_H[[6, 7, 8, 9, 10, 11][leg]] = w_3_t_2
-        out_H[[12, 13, 14, 15, 16, 17][leg]] = w_3_t_3
-        out_H[[18, 19, 20, 21, 22, 23][leg]] = H_a_3_x
-        out_H[[24, 25, 26, 27, 28, 29][leg]] = H_a_3_y
-        out_H[[30, 31, 32, 33, 34, 35][leg]] = H_a_3_z
+        out_H[_H_uhs[0][leg]] = w_3_t
+        out_H[_H_uhs[1][leg]] = w_3_t_2
+        out_H[_H_uhs[2][leg]] = w_3_t_3
+        out_H[_H_uhs[3][leg]] = H_a_3_x
+        out_H[_H_uhs[4][leg]] = H_a_3_y
+        out_H[_H_uhs[5][leg]] = H_a_3_z
     total_uhs_x, total_uhs_y, total_uhs_z, total_uhs_x_2, total_uhs_y_2, total_uhs_z_2 = sums
     # (E4) force that actuators and external wrench must give
     R_t_x = f_p_x - total_uhs_x
@@ -3136,7 +3189,7 @@ def _run_inverse_kinematics(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_q = m.zeros(18)
+    out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
         branch_1, branch_2, inv_uhs_joint3_pitch, size_t, uhs_base_frame_xx, uhs_base_frame_xy,
@@ -3188,9 +3241,9 @@ def _run_inverse_kinematics(m, X):
         ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t) & (abs(rho2_2) > _TOLERANCE
             * _TOLERANCE * size_t))
         )
-        out_q[[0, 3, 6, 9, 12, 15][leg]] = q_1
-        out_q[[1, 4, 7, 10, 13, 16][leg]] = q_2
-        out_q[[2, 5, 8, 11, 14, 17][leg]] = -q_3
+        out_q[_q_uhs[0][leg]] = q_1
+        out_q[_q_uhs[1][leg]] = q_2
+        out_q[_q_uhs[2][leg]] = -q_3
     return ok, (out_q,)
 
 
@@ -3249,7 +3302,7 @@ def _run_joint_rates(m, X, V):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_qd = m.zeros(18)
+    out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
         branch_1, branch_2, inv_uhs_joint3_pitch, size, size_t, uhs_base_frame_xx,
@@ -3332,9 +3385,9 @@ def _run_joint_rates(m, X, V):
             * _TOLERANCE * size_t) & (abs(root_2) > _TOLERANCE * size) & (abs(v_1_r0_y) >
             _TOLERANCE * size))
         )
-        out_qd[[0, 3, 6, 9, 12, 15][leg]] = qd_1
-        out_qd[[1, 4, 7, 10, 13, 16][leg]] = qd_2
-        out_qd[[2, 5, 8, 11, 14, 17][leg]] = qd_3
+        out_qd[_qd_uhs[0][leg]] = qd_1
+        out_qd[_qd_uhs[1][leg]] = qd_2
+        out_qd[_qd_uhs[2][leg]] = qd_3
     return ok, (out_qd,)
 
 
@@ -3406,7 +3459,7 @@ def _run_joint_accelerations(m, X, V, A):
     alpha_z = A_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_qdd = m.zeros(18)
+    out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
         branch_1, branch_2, inv_uhs_joint3_pitch, size, size_t, uhs_base_frame_xx,
@@ -3570,9 +3623,9 @@ def _run_joint_accelerations(m, X, V, A):
             * _TOLERANCE * size_t) & (abs(root_2) > _TOLERANCE * size) & (abs(v_1_r0_y) >
             _TOLERANCE * size))
         )
-        out_qdd[[0, 3, 6, 9, 12, 15][leg]] = qdd_1
-        out_qdd[[1, 4, 7, 10, 13, 16][leg]] = -qdd_2
-        out_qdd[[2, 5, 8, 11, 14, 17][leg]] = qdd_3
+        out_qdd[_qdd_uhs[0][leg]] = qdd_1
+        out_qdd[_qdd_uhs[1][leg]] = -qdd_2
+        out_qdd[_qdd_uhs[2][leg]] = qdd_3
     return ok, (out_qdd,)
 
 
@@ -3645,8 +3698,8 @@ def _run_legs(m, X, V, A):
     alpha_z = A_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_leg_force = m.zeros(18)
-    out_drive = m.zeros(18)
+    out_leg_force = m.zeros("leg_force")
+    out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
         J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz,
@@ -3926,12 +3979,12 @@ def _run_legs(m, X, V, A):
             * _TOLERANCE * size_t) & (abs(root_2) > _TOLERANCE * size) & (abs(v_1_r0_y) >
             _TOLERANCE * size))
         )
-        out_leg_force[[0, 3, 6, 9, 12, 15][leg]] = c_true_in_base_x
-        out_leg_force[[1, 4, 7, 10, 13, 16][leg]] = c_true_in_base_y
-        out_leg_force[[2, 5, 8, 11, 14, 17][leg]] = c_true_in_base_z
-        out_drive[[0, 3, 6, 9, 12, 15][leg]] = w_3_t
-        out_drive[[1, 4, 7, 10, 13, 16][leg]] = w_3_t_2
-        out_drive[[2, 5, 8, 11, 14, 17][leg]] = w_3_t_3
+        out_leg_force[_leg_force_uhs[0][leg]] = c_true_in_base_x
+        out_leg_force[_leg_force_uhs[1][leg]] = c_true_in_base_y
+        out_leg_force[_leg_force_uhs[2][leg]] = c_true_in_base_z
+        out_drive[_drive_uhs[0][leg]] = w_3_t
+        out_drive[_drive_uhs[1][leg]] = w_3_t_2
+        out_drive[_drive_uhs[2][leg]] = w_3_t_3
     return ok, (out_leg_force, out_drive,)
 
 
@@ -3978,7 +4031,7 @@ def _run_potential(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_potential = m.zeros(1)
+    out_potential = m.zeros("potential")
     # (V1) potential energy
     potential_t = (
     gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + m_star*t_x) +
@@ -4111,10 +4164,10 @@ def _run_condition(m, X):
     reached = True
     clear = True
     valid = valid & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_H = m.zeros(36)
-    out_lengths = m.zeros(2)
-    out_pivots = m.zeros(6)
-    out_reach = m.zeros(6)
+    out_H = m.zeros("H")
+    out_lengths = m.zeros("lengths")
+    out_pivots = m.zeros("pivots")
+    out_reach = m.zeros("reach")
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
@@ -4198,13 +4251,13 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         spread_t_5,
         ))
-        out_H[[0, 1, 2, 3, 4, 5][leg]] = w_3_t
-        out_H[[6, 7, 8, 9, 10, 11][leg]] = w_3_t_2
-        out_H[[12, 13, 14, 15, 16, 17][leg]] = w_3_t_3
-        out_H[[18, 19, 20, 21, 22, 23][leg]] = H_a_3_x
-        out_H[[24, 25, 26, 27, 28, 29][leg]] = H_a_3_y
-        out_H[[30, 31, 32, 33, 34, 35][leg]] = H_a_3_z
-        out_pivots[[0, 1, 2, 3, 4, 5][leg]] = least_pivots
+        out_H[_H_uhs[0][leg]] = w_3_t
+        out_H[_H_uhs[1][leg]] = w_3_t_2
+        out_H[_H_uhs[2][leg]] = w_3_t_3
+        out_H[_H_uhs[3][leg]] = H_a_3_x
+        out_H[_H_uhs[4][leg]] = H_a_3_y
+        out_H[_H_uhs[5][leg]] = H_a_3_z
+        out_pivots[_pivots_uhs[0][leg]] = least_pivots
     total_uhs, = sums
     # (C2) rms distance of the platform points from their centroid
     spread = spread_t*sqrt(total_uhs)
@@ -4217,44 +4270,42 @@ _DEFAULT = Parameters()
 
 
 def _steps_M(m, X):
-    M_of_M, = m.run(_run_M, ((6, 6),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
     return (M_of_M,)
 
 
 def _steps_Z(m, X, V):
-    Z_of_Z, = m.run(_run_Z, ((6,),), X, V)
+    Z_of_Z, = m.run(_run_Z, ("Z",), X, V)
     return (Z_of_Z,)
 
 
 def _steps_H(m, X):
-    H_of_H, = m.run(_run_H, ((6, 6),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 
 def _steps_inverse_kinematics(m, X):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((18,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     return (q_of_inverse_kinematics,)
 
 
 def _steps_joint_rates(m, X, V):
-    qd_of_joint_rates, = m.run(_run_joint_rates, ((18,),), X, V)
+    qd_of_joint_rates, = m.run(_run_joint_rates, ("qd",), X, V)
     return (qd_of_joint_rates,)
 
 
 def _steps_joint_accelerations(m, X, V, A):
-    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ((18,),), X, V, A)
+    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
     return (qdd_of_joint_accelerations,)
 
 
 def _steps_dynamics(m, X, V):
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((6, 6), (6,), (6, 6)), X, V)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
 
 
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
-    required_of_required, H_of_required = m.run(_run_required, ((6,), (6, 6)), X, V, A)
+    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     solve_3 = _solve(H_of_required, subtract_2)
@@ -4262,9 +4313,7 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((6, 6), (6,), (6, 6)), X, V)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
     extend_2 = wrench
     add_3 = times_1 + extend_2
@@ -4279,25 +4328,25 @@ def _steps_complete_acceleration(m, X, V, A, wrench):
 
 
 def _steps_leg_reactions(m, X, V, A, wrench):
-    required_of_required, H_of_required = m.run(_run_required, ((6,), (6, 6)), X, V, A)
+    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     solve_3 = _solve(H_of_required, subtract_2)
-    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ((6, 3), (6, 3)), X, V, A)
+    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
     add_forces_4 = _with_forces(leg_force_of_legs, solve_3, drive_of_legs, [0, 1, 2, 3, 4, 5])
     return (add_forces_4,)
 
 
 def _steps_energy(m, X, V):
-    M_of_M, = m.run(_run_M, ((6, 6),), X)
-    potential_of_potential, = m.run(_run_potential, ((1,),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
+    potential_of_potential, = m.run(_run_potential, ("potential",), X)
     half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
     entry_2 = potential_of_potential[0]
     return (half_form_1, entry_2,)
 
 
 def _steps_null_space(m, X):
-    H_of_H, = m.run(_run_H, ((6, 6),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     null_basis_1 = _null_basis(H_of_H, 6)
     return (null_basis_1,)
 
@@ -4305,7 +4354,7 @@ def _steps_null_space(m, X):
 def _steps_condition(m, X, length):
     (
     H_of_condition, lengths_of_condition, pivots_of_condition, reach_of_condition,
-    ) = m.run(_run_condition, ((6, 6), (2,), (6,), (6,)), X)
+    ) = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
     choose_length_1 = _chosen_length(lengths_of_condition, length)
     divide_rows_2 = _rows_divided(H_of_condition, choose_length_1, [3, 4, 5])
     singular_values_3 = _singular_values(divide_rows_2)
@@ -4313,14 +4362,14 @@ def _steps_condition(m, X, length):
 
 
 def _steps_mismatch(m, X, q_actuated):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((18,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     take_1 = q_of_inverse_kinematics[[2, 5, 8, 11, 14, 17]]
     subtract_2 = q_actuated - take_1
     return (subtract_2,)
 
 
 def _steps_slope(m, X):
-    H_of_H, = m.run(_run_H, ((6, 6),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 

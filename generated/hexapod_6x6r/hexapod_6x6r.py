@@ -67,6 +67,101 @@ NJ = 30
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
 
+_SHAPES = {  # of the arrays that functions give
+    "M": (6, 6),
+    "Z": (6,),
+    "H": (6, 6),
+    "required": (6,),
+    "q": (30,),
+    "qd": (30,),
+    "qdd": (30,),
+    "leg_force": (6, 6),
+    "drive": (6, 6),
+    "potential": (1,),
+    "lengths": (2,),
+    "pivots": (6,),
+    "reach": (6,),
+    "gap_rrrrrr": (6, 5),
+    "jacobian_rrrrrr": (6, 25),
+}
+# Where the entries of a leg type's legs stand in these arrays, row by row.
+_H_rrrrrr = (
+    [0, 1, 2, 3, 4, 5],
+    [6, 7, 8, 9, 10, 11],
+    [12, 13, 14, 15, 16, 17],
+    [18, 19, 20, 21, 22, 23],
+    [24, 25, 26, 27, 28, 29],
+    [30, 31, 32, 33, 34, 35],
+)
+_q_rrrrrr = (
+    [0, 5, 10, 15, 20, 25],
+    [1, 6, 11, 16, 21, 26],
+    [2, 7, 12, 17, 22, 27],
+    [3, 8, 13, 18, 23, 28],
+    [4, 9, 14, 19, 24, 29],
+)
+_qd_rrrrrr = (
+    [0, 5, 10, 15, 20, 25],
+    [1, 6, 11, 16, 21, 26],
+    [2, 7, 12, 17, 22, 27],
+    [3, 8, 13, 18, 23, 28],
+    [4, 9, 14, 19, 24, 29],
+)
+_qdd_rrrrrr = (
+    [0, 5, 10, 15, 20, 25],
+    [1, 6, 11, 16, 21, 26],
+    [2, 7, 12, 17, 22, 27],
+    [3, 8, 13, 18, 23, 28],
+    [4, 9, 14, 19, 24, 29],
+)
+_leg_force_rrrrrr = (
+    [0, 6, 12, 18, 24, 30],
+    [1, 7, 13, 19, 25, 31],
+    [2, 8, 14, 20, 26, 32],
+    [3, 9, 15, 21, 27, 33],
+    [4, 10, 16, 22, 28, 34],
+    [5, 11, 17, 23, 29, 35],
+)
+_drive_rrrrrr = (
+    [0, 6, 12, 18, 24, 30],
+    [1, 7, 13, 19, 25, 31],
+    [2, 8, 14, 20, 26, 32],
+    [3, 9, 15, 21, 27, 33],
+    [4, 10, 16, 22, 28, 34],
+    [5, 11, 17, 23, 29, 35],
+)
+_pivots_rrrrrr = (
+    [0, 1, 2, 3, 4, 5],
+)
+_gap_rrrrrr_rrrrrr = (
+    [0, 5, 10, 15, 20, 25],
+    [1, 6, 11, 16, 21, 26],
+    [2, 7, 12, 17, 22, 27],
+    [3, 8, 13, 18, 23, 28],
+    [4, 9, 14, 19, 24, 29],
+)
+_jacobian_rrrrrr_rrrrrr = (
+    [0, 25, 50, 75, 100, 125],
+    [5, 30, 55, 80, 105, 130],
+    [10, 35, 60, 85, 110, 135],
+    [1, 26, 51, 76, 101, 126],
+    [6, 31, 56, 81, 106, 131],
+    [11, 36, 61, 86, 111, 136],
+    [2, 27, 52, 77, 102, 127],
+    [7, 32, 57, 82, 107, 132],
+    [12, 37, 62, 87, 112, 137],
+    [13, 38, 63, 88, 113, 138],
+    [9, 34, 59, 84, 109, 134],
+    [15, 40, 65, 90, 115, 140],
+    [16, 41, 66, 91, 116, 141],
+    [17, 42, 67, 92, 117, 142],
+    [18, 43, 68, 93, 118, 143],
+    [20, 45, 70, 95, 120, 145],
+    [21, 46, 71, 96, 121, 146],
+    [22, 47, 72, 97, 122, 147],
+    [23, 48, 73, 98, 123, 148],
+    [24, 49, 74, 99, 124, 149],
+)
 _DRIVEN_JOINTS = (1, 6, 11, 16, 21, 26)
 
 _DEFAULTS = {
@@ -548,6 +643,7 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _rrrrrr = 6
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     gravity_z = p.gravity[2]
@@ -834,20 +930,20 @@ def _prepare(p):
     )
     # (rrrrrr-V13) force part of reciprocal wrench 1
     inv_size = 1.0/size
-    total_rrrrrr = np.sum(np.broadcast_to(rrrrrr_link5_mass, 6))
-    total_rrrrrr_x = np.sum(np.broadcast_to(h_star_t_4, 6))
-    total_rrrrrr_y = np.sum(np.broadcast_to(h_star_t_5, 6))
-    total_rrrrrr_z = np.sum(np.broadcast_to(h_star_t_6, 6))
-    total_rrrrrr_xx = np.sum(np.broadcast_to(J_star_t_15, 6))
-    total_rrrrrr_xy = np.sum(np.broadcast_to(J_star_t_16, 6))
-    total_rrrrrr_xz = np.sum(np.broadcast_to(J_star_t_17, 6))
-    total_rrrrrr_yy = np.sum(np.broadcast_to(J_star_t_18, 6))
-    total_rrrrrr_yz = np.sum(np.broadcast_to(J_star_t_19, 6))
-    total_rrrrrr_zz = np.sum(np.broadcast_to(J_star_t_20, 6))
-    total_rrrrrr_x_2 = np.sum(np.broadcast_to(rrrrrr_platform_point_x, 6))
-    total_rrrrrr_y_2 = np.sum(np.broadcast_to(rrrrrr_platform_point_y, 6))
-    total_rrrrrr_z_2 = np.sum(np.broadcast_to(rrrrrr_platform_point_z, 6))
-    total_rrrrrr_2 = np.sum(np.broadcast_to(size_t_2, 6))
+    total_rrrrrr = np.sum(np.broadcast_to(rrrrrr_link5_mass, _rrrrrr))
+    total_rrrrrr_x = np.sum(np.broadcast_to(h_star_t_4, _rrrrrr))
+    total_rrrrrr_y = np.sum(np.broadcast_to(h_star_t_5, _rrrrrr))
+    total_rrrrrr_z = np.sum(np.broadcast_to(h_star_t_6, _rrrrrr))
+    total_rrrrrr_xx = np.sum(np.broadcast_to(J_star_t_15, _rrrrrr))
+    total_rrrrrr_xy = np.sum(np.broadcast_to(J_star_t_16, _rrrrrr))
+    total_rrrrrr_xz = np.sum(np.broadcast_to(J_star_t_17, _rrrrrr))
+    total_rrrrrr_yy = np.sum(np.broadcast_to(J_star_t_18, _rrrrrr))
+    total_rrrrrr_yz = np.sum(np.broadcast_to(J_star_t_19, _rrrrrr))
+    total_rrrrrr_zz = np.sum(np.broadcast_to(J_star_t_20, _rrrrrr))
+    total_rrrrrr_x_2 = np.sum(np.broadcast_to(rrrrrr_platform_point_x, _rrrrrr))
+    total_rrrrrr_y_2 = np.sum(np.broadcast_to(rrrrrr_platform_point_y, _rrrrrr))
+    total_rrrrrr_z_2 = np.sum(np.broadcast_to(rrrrrr_platform_point_z, _rrrrrr))
+    total_rrrrrr_2 = np.sum(np.broadcast_to(size_t_2, _rrrrrr))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_rrrrrr
     # (L2) first moment about the platform origin
@@ -881,7 +977,7 @@ def _prepare(p):
                 J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x,
                 h_star_y, h_star_z, m_star,),
             (
-                (6,
+                (_rrrrrr,
         (J_1_xx, J_2_xx, J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_2_zz, J_3_xx, J_3_xy, J_3_xz, J_3_yy,
                     J_3_yz, J_3_zz, J_4_xx, J_4_xy, J_4_xz, J_4_yy, J_4_yz, J_5_xx, J_5_xy,
                     J_5_xz, J_5_yy, J_5_yz, J_5_zz, Jc_2_t, Jc_3_t_2, Jc_3_t_3, Jc_4_xx,
@@ -904,7 +1000,7 @@ def _prepare(p):
         (J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
                 h_star_z, m_star,),
             (
-                (6,
+                (_rrrrrr,
         (J_1_xx, J_2_xx, J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_2_zz, J_3_xx, J_3_xy, J_3_xz, J_3_yy,
                     J_3_yz, J_3_zz, J_4_xx, J_4_xy, J_4_xz, J_4_yy, J_4_yz, J_5_xx, J_5_xy,
                     J_5_xz, J_5_yy, J_5_yz, J_5_zz, Jc_2_t, Jc_3_t_2, Jc_3_t_3, Jc_4_xx, h_3_y,
@@ -924,7 +1020,7 @@ def _prepare(p):
         (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2,
                 Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
             (
-                (6,
+                (_rrrrrr,
         (J_1_xx, J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, J_4_xy, J_4_xz, J_4_yz, J_5_xy,
                     J_5_xz, J_5_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy,
                     Sigma_3_zz, Sigma_4_xx, Sigma_4_yy, Sigma_4_zz, Sigma_5_xx, Sigma_5_yy,
@@ -944,7 +1040,7 @@ def _prepare(p):
         "H": (
         (),
             (
-                (6,
+                (_rrrrrr,
         (rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
                     rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx,
                     rrrrrr_base_frame_zy, rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x,
@@ -960,7 +1056,7 @@ def _prepare(p):
         (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
                 gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
-                (6,
+                (_rrrrrr,
         (J_1_xx, J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, J_4_xy, J_4_xz, J_4_yz, J_5_xy,
                     J_5_xz, J_5_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy,
                     Sigma_3_zz, Sigma_4_xx, Sigma_4_yy, Sigma_4_zz, Sigma_5_xx, Sigma_5_yy,
@@ -980,7 +1076,7 @@ def _prepare(p):
         "inverse_kinematics": (
         (),
             (
-                (6,
+                (_rrrrrr,
         (),
                 ),
             ),
@@ -988,7 +1084,7 @@ def _prepare(p):
         "joint_rates": (
         (),
             (
-                (6,
+                (_rrrrrr,
         (rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
                     rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx,
                     rrrrrr_base_frame_zy, rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x,
@@ -1003,7 +1099,7 @@ def _prepare(p):
         "joint_accelerations": (
         (),
             (
-                (6,
+                (_rrrrrr,
         (rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
                     rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx,
                     rrrrrr_base_frame_zy, rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x,
@@ -1018,7 +1114,7 @@ def _prepare(p):
         "legs": (
         (gravity_x, gravity_y, gravity_z,),
             (
-                (6,
+                (_rrrrrr,
         (J_1_xx, J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, J_4_xy, J_4_xz, J_4_yz, J_5_xy,
                     J_5_xz, J_5_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy,
                     Sigma_3_zz, Sigma_4_xx, Sigma_4_yy, Sigma_4_zz, Sigma_5_xx, Sigma_5_yy,
@@ -1039,7 +1135,7 @@ def _prepare(p):
         "potential": (
         (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
-                (6,
+                (_rrrrrr,
         (b_r0_x, b_r0_y, b_r0_z, g_r0_x, g_r0_y, g_r0_z, h_1_x, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z,
                     h_3_x, h_3_y, h_3_z, h_4_x, h_4_y, h_4_z, h_5_x, h_5_y, h_5_z,
                     rrrrrr_joint2_offset_x, rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x,
@@ -1050,7 +1146,7 @@ def _prepare(p):
         "condition": (
         (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
             (
-                (6,
+                (_rrrrrr,
         (inv_size, rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz,
                     rrrrrr_base_frame_yx, rrrrrr_base_frame_yy, rrrrrr_base_frame_yz,
                     rrrrrr_base_frame_zx, rrrrrr_base_frame_zy, rrrrrr_base_frame_zz,
@@ -1065,7 +1161,7 @@ def _prepare(p):
         "closure_rrrrrr": (
         (),
             (
-                (6,
+                (_rrrrrr,
         (rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
                     rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx,
                     rrrrrr_base_frame_zy, rrrrrr_base_frame_zz, rrrrrr_base_point_x,
@@ -1117,16 +1213,16 @@ class _Floats:
         """Shared values, and (leg, its values) for every leg of each loop."""
         return _constants(self.p, name)[:2]
 
-    def zeros(self, size):
-        return [0.0] * size
+    def zeros(self, name):
+        return [0.0] * math.prod(_SHAPES[name])
 
     def added(self, sums, leg, terms):
         """Sums over the legs so far."""
         return [a + b for a, b in zip(sums, terms)]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(shape)), np.nan) for shape in shapes]
+        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
         for k in range(self.states):
             try:
@@ -1136,7 +1232,7 @@ class _Floats:
             if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
                 for a, array in zip(found, arrays):
                     a[k] = array
-        return [a.T.reshape(*shape, self.states) for a, shape in zip(found, shapes)]
+        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
 
 
 class _Arrays:
@@ -1152,8 +1248,8 @@ class _Arrays:
         shared, _, columns = _constants(self.p, name)
         return shared, columns
 
-    def zeros(self, size):
-        return np.zeros((size, self.states))
+    def zeros(self, name):
+        return np.zeros((math.prod(_SHAPES[name]), self.states))
 
     def every(self, good):
         """Whether it holds for all legs."""
@@ -1164,7 +1260,7 @@ class _Arrays:
         shape = (legs.stop, self.states)
         return [np.add.reduce(np.broadcast_to(t, shape), axis=0) for t in terms]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
         ok, arrays = function(self, *vectors)
         for a in arrays:
@@ -1172,7 +1268,7 @@ class _Arrays:
         if not np.all(ok):
             for a in arrays:
                 a[:, ~ok] = np.nan
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
 
 class _Judged(_Arrays):
@@ -1182,12 +1278,12 @@ class _Judged(_Arrays):
         super().__init__(p, states)
         self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
         (valid, reached, clear), arrays = function(self, *vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
             self.failed[code] |= ~np.broadcast_to(good, self.states)
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -1464,7 +1560,7 @@ def _closed(m, X, q0):
     return m.closed(q) if isinstance(m, _Judged) else q
 
 
-def _close_legs(p, X, q, run, inputs, shapes, joints, turning, rows, signs):
+def _close_legs(p, X, q, run, inputs, arrays, joints, turning, rows, signs):
     """Newton's iteration for the legs of a type, all states at once; q is changed.
 
     What converges off home's branch is NaN: the determinant of the Jacobian's rows, which keeps
@@ -1477,7 +1573,7 @@ def _close_legs(p, X, q, run, inputs, shapes, joints, turning, rows, signs):
         if not at.size:
             break
         chosen = [{"X": X, "q": q}[name][:, at] for name in inputs]
-        gap, jacobian = _mode(p, at.size).run(run, shapes, *chosen)
+        gap, jacobian = _mode(p, at.size).run(run, arrays, *chosen)
         jacobian = np.moveaxis(jacobian.reshape(legs, -1, unknowns, at.size), 0, 2)
         step = _newton_step(jacobian, np.moveaxis(gap, 0, 1))
         largest = np.max(np.abs(step), axis=(0, 1))
@@ -1645,9 +1741,9 @@ def _run_dynamics(m, X, V, q):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_M = m.zeros(36)
-    out_Z = m.zeros(6)
-    out_H = m.zeros(36)
+    out_M = m.zeros("M")
+    out_Z = m.zeros("Z")
+    out_H = m.zeros("H")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -3242,12 +3338,12 @@ def _run_dynamics(m, X, V, q):
             M_aa_t_2, M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6, U_in_base_x, U_in_base_y,
             U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,
         ))
-        out_H[[0, 1, 2, 3, 4, 5][leg]] = w_2_in_base_x
-        out_H[[6, 7, 8, 9, 10, 11][leg]] = w_2_in_base_y
-        out_H[[12, 13, 14, 15, 16, 17][leg]] = w_2_in_base_z
-        out_H[[18, 19, 20, 21, 22, 23][leg]] = H_a_2_x
-        out_H[[24, 25, 26, 27, 28, 29][leg]] = H_a_2_y
-        out_H[[30, 31, 32, 33, 34, 35][leg]] = H_a_2_z
+        out_H[_H_rrrrrr[0][leg]] = w_2_in_base_x
+        out_H[_H_rrrrrr[1][leg]] = w_2_in_base_y
+        out_H[_H_rrrrrr[2][leg]] = w_2_in_base_z
+        out_H[_H_rrrrrr[3][leg]] = H_a_2_x
+        out_H[_H_rrrrrr[4][leg]] = H_a_2_y
+        out_H[_H_rrrrrr[5][leg]] = H_a_2_z
     (
     total_rrrrrr_xx, total_rrrrrr_xy, total_rrrrrr_xz, total_rrrrrr_yy, total_rrrrrr_yz,
         total_rrrrrr_zz, total_rrrrrr_xx_2, total_rrrrrr_xy_2, total_rrrrrr_xz_2, total_rrrrrr_yx,
@@ -3372,7 +3468,7 @@ def _run_M(m, X, q):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_M = m.zeros(36)
+    out_M = m.zeros("M")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -4534,7 +4630,7 @@ def _run_Z(m, X, V, q):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_Z = m.zeros(6)
+    out_Z = m.zeros("Z")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -5466,7 +5562,7 @@ def _run_H(m, X, q):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_H = m.zeros(36)
+    out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
         rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
@@ -5816,12 +5912,12 @@ def _run_H(m, X, q):
             (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
             (abs(w_1_t_82) > _TOLERANCE * size))
         )
-        out_H[[0, 1, 2, 3, 4, 5][leg]] = w_2_in_base_x
-        out_H[[6, 7, 8, 9, 10, 11][leg]] = w_2_in_base_y
-        out_H[[12, 13, 14, 15, 16, 17][leg]] = w_2_in_base_z
-        out_H[[18, 19, 20, 21, 22, 23][leg]] = H_a_2_x
-        out_H[[24, 25, 26, 27, 28, 29][leg]] = H_a_2_y
-        out_H[[30, 31, 32, 33, 34, 35][leg]] = H_a_2_z
+        out_H[_H_rrrrrr[0][leg]] = w_2_in_base_x
+        out_H[_H_rrrrrr[1][leg]] = w_2_in_base_y
+        out_H[_H_rrrrrr[2][leg]] = w_2_in_base_z
+        out_H[_H_rrrrrr[3][leg]] = H_a_2_x
+        out_H[_H_rrrrrr[4][leg]] = H_a_2_y
+        out_H[_H_rrrrrr[5][leg]] = H_a_2_z
     return ok, (out_H,)
 
 
@@ -5896,8 +5992,8 @@ def _run_required(m, X, V, A, q):
     alpha_z = A_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_required = m.zeros(6)
-    out_H = m.zeros(36)
+    out_required = m.zeros("required")
+    out_H = m.zeros("H")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -6838,12 +6934,12 @@ def _run_required(m, X, V, A, q):
         sums = m.added(sums, leg, (
         c_in_base_x, c_in_base_y, c_in_base_z, R_a_t, R_a_t_2, R_a_t_3,
         ))
-        out_H[[0, 1, 2, 3, 4, 5][leg]] = w_2_in_base_x
-        out_H[[6, 7, 8, 9, 10, 11][leg]] = w_2_in_base_y
-        out_H[[12, 13, 14, 15, 16, 17][leg]] = w_2_in_base_z
-        out_H[[18, 19, 20, 21, 22, 23][leg]] = H_a_2_x
-        out_H[[24, 25, 26, 27, 28, 29][leg]] = H_a_2_y
-        out_H[[30, 31, 32, 33, 34, 35][leg]] = H_a_2_z
+        out_H[_H_rrrrrr[0][leg]] = w_2_in_base_x
+        out_H[_H_rrrrrr[1][leg]] = w_2_in_base_y
+        out_H[_H_rrrrrr[2][leg]] = w_2_in_base_z
+        out_H[_H_rrrrrr[3][leg]] = H_a_2_x
+        out_H[_H_rrrrrr[4][leg]] = H_a_2_y
+        out_H[_H_rrrrrr[5][leg]] = H_a_2_z
     (
     total_rrrrrr_x, total_rrrrrr_y, total_rrrrrr_z, total_rrrrrr_x_2, total_rrrrrr_y_2,
         total_rrrrrr_z_2,
@@ -6874,18 +6970,18 @@ def _run_inverse_kinematics(m, q):
     q_4 = q[4]
     q_5 = q[5]
     ok = True
-    out_q = m.zeros(30)
+    out_q = m.zeros("q")
     for leg, k in legs[0]:
         q_1 = q[[0, 5, 10, 15, 20, 25][leg]]
         q_2 = q[[1, 6, 11, 16, 21, 26][leg]]
         q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
         q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
         q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
-        out_q[[0, 5, 10, 15, 20, 25][leg]] = q_1
-        out_q[[1, 6, 11, 16, 21, 26][leg]] = q_2
-        out_q[[2, 7, 12, 17, 22, 27][leg]] = q_3
-        out_q[[3, 8, 13, 18, 23, 28][leg]] = q_4
-        out_q[[4, 9, 14, 19, 24, 29][leg]] = q_5
+        out_q[_q_rrrrrr[0][leg]] = q_1
+        out_q[_q_rrrrrr[1][leg]] = q_2
+        out_q[_q_rrrrrr[2][leg]] = q_3
+        out_q[_q_rrrrrr[3][leg]] = q_4
+        out_q[_q_rrrrrr[4][leg]] = q_5
     return ok, (out_q,)
 
 
@@ -6943,7 +7039,7 @@ def _run_joint_rates(m, X, V, q):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_qd = m.zeros(30)
+    out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
         rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
@@ -7304,11 +7400,11 @@ def _run_joint_rates(m, X, V, q):
             (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
             (abs(w_1_t_82) > _TOLERANCE * size))
         )
-        out_qd[[0, 5, 10, 15, 20, 25][leg]] = qd_1_t_5
-        out_qd[[1, 6, 11, 16, 21, 26][leg]] = -qd_1_t_4
-        out_qd[[2, 7, 12, 17, 22, 27][leg]] = -qd_1_t_3
-        out_qd[[3, 8, 13, 18, 23, 28][leg]] = -qd_1_t_6
-        out_qd[[4, 9, 14, 19, 24, 29][leg]] = qd_1_t_7
+        out_qd[_qd_rrrrrr[0][leg]] = qd_1_t_5
+        out_qd[_qd_rrrrrr[1][leg]] = -qd_1_t_4
+        out_qd[_qd_rrrrrr[2][leg]] = -qd_1_t_3
+        out_qd[_qd_rrrrrr[3][leg]] = -qd_1_t_6
+        out_qd[_qd_rrrrrr[4][leg]] = qd_1_t_7
     return ok, (out_qd,)
 
 
@@ -7379,7 +7475,7 @@ def _run_joint_accelerations(m, X, V, A, q):
     alpha_z = A_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_qdd = m.zeros(30)
+    out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
         rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
@@ -7955,11 +8051,11 @@ def _run_joint_accelerations(m, X, V, A, q):
             (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
             (abs(w_1_t_82) > _TOLERANCE * size))
         )
-        out_qdd[[0, 5, 10, 15, 20, 25][leg]] = -qdd_1_t_5
-        out_qdd[[1, 6, 11, 16, 21, 26][leg]] = qdd_1_t_4
-        out_qdd[[2, 7, 12, 17, 22, 27][leg]] = qdd_1_t_3
-        out_qdd[[3, 8, 13, 18, 23, 28][leg]] = qdd_1_t_6
-        out_qdd[[4, 9, 14, 19, 24, 29][leg]] = qdd_1_t_7
+        out_qdd[_qdd_rrrrrr[0][leg]] = -qdd_1_t_5
+        out_qdd[_qdd_rrrrrr[1][leg]] = qdd_1_t_4
+        out_qdd[_qdd_rrrrrr[2][leg]] = qdd_1_t_3
+        out_qdd[_qdd_rrrrrr[3][leg]] = qdd_1_t_6
+        out_qdd[_qdd_rrrrrr[4][leg]] = qdd_1_t_7
     return ok, (out_qdd,)
 
 
@@ -8031,8 +8127,8 @@ def _run_legs(m, X, V, A, q):
     alpha_z = A_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_leg_force = m.zeros(36)
-    out_drive = m.zeros(36)
+    out_leg_force = m.zeros("leg_force")
+    out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
         J_1_xx, J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, J_4_xy, J_4_xz, J_4_yz, J_5_xy,
@@ -8911,18 +9007,18 @@ def _run_legs(m, X, V, A, q):
             (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
             (abs(w_1_t_82) > _TOLERANCE * size))
         )
-        out_leg_force[[0, 6, 12, 18, 24, 30][leg]] = c_true_in_base_x
-        out_leg_force[[1, 7, 13, 19, 25, 31][leg]] = c_true_in_base_y
-        out_leg_force[[2, 8, 14, 20, 26, 32][leg]] = c_true_in_base_z
-        out_leg_force[[3, 9, 15, 21, 27, 33][leg]] = c_m_in_base_x
-        out_leg_force[[4, 10, 16, 22, 28, 34][leg]] = c_m_in_base_y
-        out_leg_force[[5, 11, 17, 23, 29, 35][leg]] = c_m_in_base_z
-        out_drive[[0, 6, 12, 18, 24, 30][leg]] = w_2_in_base_x
-        out_drive[[1, 7, 13, 19, 25, 31][leg]] = w_2_in_base_y
-        out_drive[[2, 8, 14, 20, 26, 32][leg]] = w_2_in_base_z
-        out_drive[[3, 9, 15, 21, 27, 33][leg]] = o_2_in_base_x
-        out_drive[[4, 10, 16, 22, 28, 34][leg]] = o_2_in_base_y
-        out_drive[[5, 11, 17, 23, 29, 35][leg]] = o_2_in_base_z
+        out_leg_force[_leg_force_rrrrrr[0][leg]] = c_true_in_base_x
+        out_leg_force[_leg_force_rrrrrr[1][leg]] = c_true_in_base_y
+        out_leg_force[_leg_force_rrrrrr[2][leg]] = c_true_in_base_z
+        out_leg_force[_leg_force_rrrrrr[3][leg]] = c_m_in_base_x
+        out_leg_force[_leg_force_rrrrrr[4][leg]] = c_m_in_base_y
+        out_leg_force[_leg_force_rrrrrr[5][leg]] = c_m_in_base_z
+        out_drive[_drive_rrrrrr[0][leg]] = w_2_in_base_x
+        out_drive[_drive_rrrrrr[1][leg]] = w_2_in_base_y
+        out_drive[_drive_rrrrrr[2][leg]] = w_2_in_base_z
+        out_drive[_drive_rrrrrr[3][leg]] = o_2_in_base_x
+        out_drive[_drive_rrrrrr[4][leg]] = o_2_in_base_y
+        out_drive[_drive_rrrrrr[5][leg]] = o_2_in_base_z
     return ok, (out_leg_force, out_drive,)
 
 
@@ -8973,7 +9069,7 @@ def _run_potential(m, X, q):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_potential = m.zeros(1)
+    out_potential = m.zeros("potential")
     # (V1) potential energy
     potential_t = (
     gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + m_star*t_x) +
@@ -9108,10 +9204,10 @@ def _run_condition(m, X, q):
     reached = True
     clear = True
     valid = valid & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_H = m.zeros(36)
-    out_lengths = m.zeros(2)
-    out_pivots = m.zeros(6)
-    out_reach = m.zeros(6)
+    out_H = m.zeros("H")
+    out_lengths = m.zeros("lengths")
+    out_pivots = m.zeros("pivots")
+    out_reach = m.zeros("reach")
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
@@ -9481,13 +9577,13 @@ def _run_condition(m, X, q):
         sums = m.added(sums, leg, (
         spread_t_5,
         ))
-        out_H[[0, 1, 2, 3, 4, 5][leg]] = w_2_in_base_x
-        out_H[[6, 7, 8, 9, 10, 11][leg]] = w_2_in_base_y
-        out_H[[12, 13, 14, 15, 16, 17][leg]] = w_2_in_base_z
-        out_H[[18, 19, 20, 21, 22, 23][leg]] = H_a_2_x
-        out_H[[24, 25, 26, 27, 28, 29][leg]] = H_a_2_y
-        out_H[[30, 31, 32, 33, 34, 35][leg]] = H_a_2_z
-        out_pivots[[0, 1, 2, 3, 4, 5][leg]] = least_pivots
+        out_H[_H_rrrrrr[0][leg]] = w_2_in_base_x
+        out_H[_H_rrrrrr[1][leg]] = w_2_in_base_y
+        out_H[_H_rrrrrr[2][leg]] = w_2_in_base_z
+        out_H[_H_rrrrrr[3][leg]] = H_a_2_x
+        out_H[_H_rrrrrr[4][leg]] = H_a_2_y
+        out_H[_H_rrrrrr[5][leg]] = H_a_2_z
+        out_pivots[_pivots_rrrrrr[0][leg]] = least_pivots
     total_rrrrrr, = sums
     # (C2) rms distance of the platform points from their centroid
     spread = spread_t*sqrt(total_rrrrrr)
@@ -9541,8 +9637,8 @@ def _run_closure_rrrrrr(m, X, q):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_gap_rrrrrr = m.zeros(30)
-    out_jacobian_rrrrrr = m.zeros(150)
+    out_gap_rrrrrr = m.zeros("gap_rrrrrr")
+    out_jacobian_rrrrrr = m.zeros("jacobian_rrrrrr")
     for leg, k in legs[0]:
         (
         rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
@@ -9714,38 +9810,38 @@ def _run_closure_rrrrrr(m, X, q):
         gap_x = S_r4_x*s_5 - r_1_r6_x - S_r6_y*c_5_t
         gap_y = -r_1_r6_y - S_r4_x*c_5_t - S_r6_y*s_5
         gap_z = S_r1_x*s_4 - r_1_r4_x - S_r4_y*c_4_t
-        out_gap_rrrrrr[[0, 5, 10, 15, 20, 25][leg]] = gap_x
-        out_gap_rrrrrr[[1, 6, 11, 16, 21, 26][leg]] = gap_y
-        out_gap_rrrrrr[[2, 7, 12, 17, 22, 27][leg]] = gap_z
-        out_jacobian_rrrrrr[[0, 25, 50, 75, 100, 125][leg]] = v_1_x
-        out_jacobian_rrrrrr[[5, 30, 55, 80, 105, 130][leg]] = v_1_y
-        out_jacobian_rrrrrr[[10, 35, 60, 85, 110, 135][leg]] = v_1_z
-        out_jacobian_rrrrrr[[1, 26, 51, 76, 101, 126][leg]] = v_2_x
-        out_jacobian_rrrrrr[[6, 31, 56, 81, 106, 131][leg]] = v_2_y
-        out_jacobian_rrrrrr[[11, 36, 61, 86, 111, 136][leg]] = v_2_z
-        out_jacobian_rrrrrr[[2, 27, 52, 77, 102, 127][leg]] = v_3_x
-        out_jacobian_rrrrrr[[7, 32, 57, 82, 107, 132][leg]] = v_3_y
-        out_jacobian_rrrrrr[[12, 37, 62, 87, 112, 137][leg]] = v_3_z
-        out_jacobian_rrrrrr[[13, 38, 63, 88, 113, 138][leg]] = v_4_z
-        out_jacobian_rrrrrr[[9, 34, 59, 84, 109, 134][leg]] = rrrrrr_platform_joint_offset_x
-        out_gap_rrrrrr[[3, 8, 13, 18, 23, 28][leg]] = -end_p1_r6_x
-        out_jacobian_rrrrrr[[15, 40, 65, 90, 115, 140][leg]] = -w_1_t
-        out_jacobian_rrrrrr[[16, 41, 66, 91, 116, 141][leg]] = -w_1_t_2
-        out_jacobian_rrrrrr[[17, 42, 67, 92, 117, 142][leg]] = -w_1_t_2
-        out_jacobian_rrrrrr[[18, 43, 68, 93, 118, 143][leg]] = n_m1_r0_y
-        out_gap_rrrrrr[[4, 9, 14, 19, 24, 29][leg]] = -end_p1_r8_x
-        out_jacobian_rrrrrr[[20, 45, 70, 95, 120, 145][leg]] = -w_1_t_3
-        out_jacobian_rrrrrr[[21, 46, 71, 96, 121, 146][leg]] = -w_1_t_4
-        out_jacobian_rrrrrr[[22, 47, 72, 97, 122, 147][leg]] = -w_1_t_4
-        out_jacobian_rrrrrr[[23, 48, 73, 98, 123, 148][leg]] = n_m2_t
-        out_jacobian_rrrrrr[[24, 49, 74, 99, 124, 149][leg]] = end_p1_r8_y
+        out_gap_rrrrrr[_gap_rrrrrr_rrrrrr[0][leg]] = gap_x
+        out_gap_rrrrrr[_gap_rrrrrr_rrrrrr[1][leg]] = gap_y
+        out_gap_rrrrrr[_gap_rrrrrr_rrrrrr[2][leg]] = gap_z
+        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[0][leg]] = v_1_x
+        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[1][leg]] = v_1_y
+        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[2][leg]] = v_1_z
+        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[3][leg]] = v_2_x
+        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[4][leg]] = v_2_y
+        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[5][leg]] = v_2_z
+        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[6][leg]] = v_3_x
+        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[7][leg]] = v_3_y
+        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[8][leg]] = v_3_z
+        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[9][leg]] = v_4_z
+        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[10][leg]] = rrrrrr_platform_joint_offset_x
+        out_gap_rrrrrr[_gap_rrrrrr_rrrrrr[3][leg]] = -end_p1_r6_x
+        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[11][leg]] = -w_1_t
+        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[12][leg]] = -w_1_t_2
+        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[13][leg]] = -w_1_t_2
+        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[14][leg]] = n_m1_r0_y
+        out_gap_rrrrrr[_gap_rrrrrr_rrrrrr[4][leg]] = -end_p1_r8_x
+        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[15][leg]] = -w_1_t_3
+        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[16][leg]] = -w_1_t_4
+        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[17][leg]] = -w_1_t_4
+        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[18][leg]] = n_m2_t
+        out_jacobian_rrrrrr[_jacobian_rrrrrr_rrrrrr[19][leg]] = end_p1_r8_y
     return ok, (out_gap_rrrrrr, out_jacobian_rrrrrr,)
 
 
 _GIVEN = ()  # positions in q and X of the extra coordinates
 _CLOSURES = (  # function, its inputs, shapes of its arrays; in q the joints of each leg, and those that turn;
     # rows of the Jacobian whose determinant tells the branch, and its signs
-    (_run_closure_rrrrrr, ('X', 'q'), ((6, 5), (6, 25)), np.array([[0, 1, 2, 3, 4], [5, 6, 7, 8, 9], [10, 11, 12, 13, 14], [15, 16, 17, 18, 19], [20, 21, 22, 23, 24], [25, 26, 27, 28, 29]]), [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29], [0, 1, 2, 3, 4], _BRANCHES["sigma_closure"]),
+    (_run_closure_rrrrrr, ('X', 'q'), ('gap_rrrrrr', 'jacobian_rrrrrr'), np.array([[0, 1, 2, 3, 4], [5, 6, 7, 8, 9], [10, 11, 12, 13, 14], [15, 16, 17, 18, 19], [20, 21, 22, 23, 24], [25, 26, 27, 28, 29]]), [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29], [0, 1, 2, 3, 4], _BRANCHES["sigma_closure"]),
 )
 _Q = 3  # where a quaternion begins in X
 _DEFAULT = Parameters()
@@ -9753,51 +9849,49 @@ _DEFAULT = Parameters()
 
 def _steps_M(m, X, q0):
     q = _closed(m, X, q0)
-    M_of_M, = m.run(_run_M, ((6, 6),), X, q)
+    M_of_M, = m.run(_run_M, ("M",), X, q)
     return (M_of_M,)
 
 
 def _steps_Z(m, X, V, q0):
     q = _closed(m, X, q0)
-    Z_of_Z, = m.run(_run_Z, ((6,),), X, V, q)
+    Z_of_Z, = m.run(_run_Z, ("Z",), X, V, q)
     return (Z_of_Z,)
 
 
 def _steps_H(m, X, q0):
     q = _closed(m, X, q0)
-    H_of_H, = m.run(_run_H, ((6, 6),), X, q)
+    H_of_H, = m.run(_run_H, ("H",), X, q)
     return (H_of_H,)
 
 
 def _steps_inverse_kinematics(m, X, q0):
     q = _closed(m, X, q0)
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((30,),), q)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), q)
     return (q_of_inverse_kinematics,)
 
 
 def _steps_joint_rates(m, X, V, q0):
     q = _closed(m, X, q0)
-    qd_of_joint_rates, = m.run(_run_joint_rates, ((30,),), X, V, q)
+    qd_of_joint_rates, = m.run(_run_joint_rates, ("qd",), X, V, q)
     return (qd_of_joint_rates,)
 
 
 def _steps_joint_accelerations(m, X, V, A, q0):
     q = _closed(m, X, q0)
-    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ((30,),), X, V, A, q)
+    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ("qdd",), X, V, A, q)
     return (qdd_of_joint_accelerations,)
 
 
 def _steps_dynamics(m, X, V, q0):
     q = _closed(m, X, q0)
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((6, 6), (6,), (6, 6)), X, V, q)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V, q)
     return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
 
 
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights, q0):
     q = _closed(m, X, q0)
-    required_of_required, H_of_required = m.run(_run_required, ((6,), (6, 6)), X, V, A, q)
+    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A, q)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     solve_3 = _solve(H_of_required, subtract_2)
@@ -9806,9 +9900,7 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights, q0):
 
 def _steps_forward_dynamics(m, X, V, tau, wrench, q0):
     q = _closed(m, X, q0)
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((6, 6), (6,), (6, 6)), X, V, q)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V, q)
     times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
     extend_2 = wrench
     add_3 = times_1 + extend_2
@@ -9824,19 +9916,19 @@ def _steps_complete_acceleration(m, X, V, A, wrench, q0):
 
 def _steps_leg_reactions(m, X, V, A, wrench, q0):
     q = _closed(m, X, q0)
-    required_of_required, H_of_required = m.run(_run_required, ((6,), (6, 6)), X, V, A, q)
+    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A, q)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     solve_3 = _solve(H_of_required, subtract_2)
-    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ((6, 6), (6, 6)), X, V, A, q)
+    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ("leg_force", "drive"), X, V, A, q)
     add_forces_4 = _with_forces(leg_force_of_legs, solve_3, drive_of_legs, [0, 1, 2, 3, 4, 5])
     return (add_forces_4,)
 
 
 def _steps_energy(m, X, V, q0):
     q = _closed(m, X, q0)
-    M_of_M, = m.run(_run_M, ((6, 6),), X, q)
-    potential_of_potential, = m.run(_run_potential, ((1,),), X, q)
+    M_of_M, = m.run(_run_M, ("M",), X, q)
+    potential_of_potential, = m.run(_run_potential, ("potential",), X, q)
     half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
     entry_2 = potential_of_potential[0]
     return (half_form_1, entry_2,)
@@ -9844,7 +9936,7 @@ def _steps_energy(m, X, V, q0):
 
 def _steps_null_space(m, X, q0):
     q = _closed(m, X, q0)
-    H_of_H, = m.run(_run_H, ((6, 6),), X, q)
+    H_of_H, = m.run(_run_H, ("H",), X, q)
     null_basis_1 = _null_basis(H_of_H, 6)
     return (null_basis_1,)
 
@@ -9853,7 +9945,7 @@ def _steps_condition(m, X, length, q0):
     q = _closed(m, X, q0)
     (
     H_of_condition, lengths_of_condition, pivots_of_condition, reach_of_condition,
-    ) = m.run(_run_condition, ((6, 6), (2,), (6,), (6,)), X, q)
+    ) = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X, q)
     choose_length_1 = _chosen_length(lengths_of_condition, length)
     divide_rows_2 = _rows_divided(H_of_condition, choose_length_1, [3, 4, 5])
     singular_values_3 = _singular_values(divide_rows_2)
@@ -9862,7 +9954,7 @@ def _steps_condition(m, X, length, q0):
 
 def _steps_mismatch(m, X, q_actuated, q0):
     q = _closed(m, X, q0)
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((30,),), q)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), q)
     take_1 = q_of_inverse_kinematics[[1, 6, 11, 16, 21, 26]]
     subtract_2 = q_actuated - take_1
     wrap_turns_3 = _wrapped(subtract_2, [0, 1, 2, 3, 4, 5])
@@ -9871,7 +9963,7 @@ def _steps_mismatch(m, X, q_actuated, q0):
 
 def _steps_slope(m, X, q0):
     q = _closed(m, X, q0)
-    H_of_H, = m.run(_run_H, ((6, 6),), X, q)
+    H_of_H, = m.run(_run_H, ("H",), X, q)
     return (H_of_H,)
 
 

@@ -67,6 +67,70 @@ NJ = 9
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
 
+_SHAPES = {  # of the arrays that functions give
+    "M": (6, 6),
+    "Z": (6,),
+    "H": (6, 6),
+    "required": (6,),
+    "q": (9,),
+    "qd": (9,),
+    "qdd": (9,),
+    "leg_force": (3, 3),
+    "drive": (6, 3),
+    "potential": (1,),
+    "lengths": (2,),
+    "pivots": (3,),
+    "reach": (3,),
+}
+# Where the entries of a leg type's legs stand in these arrays, row by row.
+_H_rprs = (
+    [0, 2, 4],
+    [6, 8, 10],
+    [12, 14, 16],
+    [18, 20, 22],
+    [24, 26, 28],
+    [30, 32, 34],
+    [1, 3, 5],
+    [7, 9, 11],
+    [13, 15, 17],
+    [19, 21, 23],
+    [25, 27, 29],
+    [31, 33, 35],
+)
+_q_rprs = (
+    [0, 3, 6],
+    [1, 4, 7],
+    [2, 5, 8],
+)
+_qd_rprs = (
+    [0, 3, 6],
+    [1, 4, 7],
+    [2, 5, 8],
+)
+_qdd_rprs = (
+    [0, 3, 6],
+    [1, 4, 7],
+    [2, 5, 8],
+)
+_leg_force_rprs = (
+    [0, 3, 6],
+    [1, 4, 7],
+    [2, 5, 8],
+)
+_drive_rprs = (
+    [0, 6, 12],
+    [1, 7, 13],
+    [2, 8, 14],
+    [3, 9, 15],
+    [4, 10, 16],
+    [5, 11, 17],
+)
+_pivots_rprs = (
+    [0, 1, 2],
+)
+_reach_rprs = (
+    [0, 1, 2],
+)
 _DRIVEN_JOINTS = (0, 1, 3, 4, 6, 7)
 
 _DEFAULTS = {
@@ -386,6 +450,7 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _rprs = 3
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     gravity_z = p.gravity[2]
@@ -535,20 +600,20 @@ def _prepare(p):
     inv_size_t_2 = 1.0/size_t_2
     # (rprs-V5) reciprocal vector 1
     inv_size = 1.0/size
-    total_rprs = np.sum(np.broadcast_to(rprs_link3_mass, 3))
-    total_rprs_x = np.sum(np.broadcast_to(h_star_t_4, 3))
-    total_rprs_y = np.sum(np.broadcast_to(h_star_t_5, 3))
-    total_rprs_z = np.sum(np.broadcast_to(h_star_t_6, 3))
-    total_rprs_xx = np.sum(np.broadcast_to(J_star_t_15, 3))
-    total_rprs_xy = np.sum(np.broadcast_to(J_star_t_16, 3))
-    total_rprs_xz = np.sum(np.broadcast_to(J_star_t_17, 3))
-    total_rprs_yy = np.sum(np.broadcast_to(J_star_t_18, 3))
-    total_rprs_yz = np.sum(np.broadcast_to(J_star_t_19, 3))
-    total_rprs_zz = np.sum(np.broadcast_to(J_star_t_20, 3))
-    total_rprs_x_2 = np.sum(np.broadcast_to(rprs_platform_point_x, 3))
-    total_rprs_y_2 = np.sum(np.broadcast_to(rprs_platform_point_y, 3))
-    total_rprs_z_2 = np.sum(np.broadcast_to(rprs_platform_point_z, 3))
-    total_rprs_2 = np.sum(np.broadcast_to(size_t_2, 3))
+    total_rprs = np.sum(np.broadcast_to(rprs_link3_mass, _rprs))
+    total_rprs_x = np.sum(np.broadcast_to(h_star_t_4, _rprs))
+    total_rprs_y = np.sum(np.broadcast_to(h_star_t_5, _rprs))
+    total_rprs_z = np.sum(np.broadcast_to(h_star_t_6, _rprs))
+    total_rprs_xx = np.sum(np.broadcast_to(J_star_t_15, _rprs))
+    total_rprs_xy = np.sum(np.broadcast_to(J_star_t_16, _rprs))
+    total_rprs_xz = np.sum(np.broadcast_to(J_star_t_17, _rprs))
+    total_rprs_yy = np.sum(np.broadcast_to(J_star_t_18, _rprs))
+    total_rprs_yz = np.sum(np.broadcast_to(J_star_t_19, _rprs))
+    total_rprs_zz = np.sum(np.broadcast_to(J_star_t_20, _rprs))
+    total_rprs_x_2 = np.sum(np.broadcast_to(rprs_platform_point_x, _rprs))
+    total_rprs_y_2 = np.sum(np.broadcast_to(rprs_platform_point_y, _rprs))
+    total_rprs_z_2 = np.sum(np.broadcast_to(rprs_platform_point_z, _rprs))
+    total_rprs_2 = np.sum(np.broadcast_to(size_t_2, _rprs))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_rprs
     # (L2) first moment about the platform origin
@@ -582,7 +647,7 @@ def _prepare(p):
                 J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x,
                 h_star_y, h_star_z, m_star,),
             (
-                (3,
+                (_rprs,
         (J_2_xx, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz, J_3_zz, Sigma_3_xx, Sigma_3_yy,
                     Sigma_3_zz, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_y, h_2_z, h_3_x,
                     h_3_y, h_3_z, inv_size_t, rprs_base_frame_xx, rprs_base_frame_xy,
@@ -599,7 +664,7 @@ def _prepare(p):
         (J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
                 h_star_z, m_star,),
             (
-                (3,
+                (_rprs,
         (J_2_xx, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz, J_3_zz, branch_1, branch_2, h_3_x, h_3_y,
                     h_3_z, inv_size_t, rprs_base_frame_xx, rprs_base_frame_xy, rprs_base_frame_xz,
                     rprs_base_frame_yx, rprs_base_frame_yy, rprs_base_frame_yz,
@@ -614,7 +679,7 @@ def _prepare(p):
         (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2,
                 Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
             (
-                (3,
+                (_rprs,
         (J_2_xx, J_3_xy, J_3_xz, J_3_yz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2,
                     g_r0_x, g_r0_y, g_r0_z, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, inv_size_t,
                     rprs_base_frame_xx, rprs_base_frame_xy, rprs_base_frame_xz,
@@ -629,7 +694,7 @@ def _prepare(p):
         "H": (
         (),
             (
-                (3,
+                (_rprs,
         (branch_1, branch_2, inv_size_t, rprs_base_frame_xx, rprs_base_frame_xy,
                     rprs_base_frame_xz, rprs_base_frame_yx, rprs_base_frame_yy,
                     rprs_base_frame_yz, rprs_base_frame_zx, rprs_base_frame_zy,
@@ -643,7 +708,7 @@ def _prepare(p):
         (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
                 gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
-                (3,
+                (_rprs,
         (J_2_xx, J_3_xy, J_3_xz, J_3_yz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2,
                     g_r0_x, g_r0_y, g_r0_z, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, inv_size_t,
                     rprs_base_frame_xx, rprs_base_frame_xy, rprs_base_frame_xz,
@@ -658,7 +723,7 @@ def _prepare(p):
         "inverse_kinematics": (
         (),
             (
-                (3,
+                (_rprs,
         (branch_1, branch_2, inv_size_t, rprs_base_frame_xx, rprs_base_frame_xy,
                     rprs_base_frame_xz, rprs_base_frame_yx, rprs_base_frame_yy,
                     rprs_base_frame_yz, rprs_base_frame_zx, rprs_base_frame_zy,
@@ -671,7 +736,7 @@ def _prepare(p):
         "joint_rates": (
         (),
             (
-                (3,
+                (_rprs,
         (branch_1, branch_2, inv_size_t, rprs_base_frame_xx, rprs_base_frame_xy,
                     rprs_base_frame_xz, rprs_base_frame_yx, rprs_base_frame_yy,
                     rprs_base_frame_yz, rprs_base_frame_zx, rprs_base_frame_zy,
@@ -684,7 +749,7 @@ def _prepare(p):
         "joint_accelerations": (
         (),
             (
-                (3,
+                (_rprs,
         (branch_1, branch_2, inv_size_t, rprs_base_frame_xx, rprs_base_frame_xy,
                     rprs_base_frame_xz, rprs_base_frame_yx, rprs_base_frame_yy,
                     rprs_base_frame_yz, rprs_base_frame_zx, rprs_base_frame_zy,
@@ -697,7 +762,7 @@ def _prepare(p):
         "legs": (
         (),
             (
-                (3,
+                (_rprs,
         (J_2_xx, J_3_xy, J_3_xz, J_3_yz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2,
                     g_r0_x, g_r0_y, g_r0_z, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, inv_size_t,
                     rprs_base_frame_xx, rprs_base_frame_xy, rprs_base_frame_xz,
@@ -712,7 +777,7 @@ def _prepare(p):
         "potential": (
         (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
-                (3,
+                (_rprs,
         (b_r0_x, b_r0_y, b_r0_z, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z,
                     h_3_x, h_3_y, h_3_z, inv_size_t, rprs_base_frame_xx, rprs_base_frame_xy,
                     rprs_base_frame_xz, rprs_base_frame_yx, rprs_base_frame_yy,
@@ -727,7 +792,7 @@ def _prepare(p):
         "condition": (
         (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
             (
-                (3,
+                (_rprs,
         (branch_1, branch_2, inv_size, inv_size_t, inv_size_t_2, rprs_base_frame_xx,
                     rprs_base_frame_xy, rprs_base_frame_xz, rprs_base_frame_yx,
                     rprs_base_frame_yy, rprs_base_frame_yz, rprs_base_frame_zx,
@@ -778,16 +843,16 @@ class _Floats:
         """Shared values, and (leg, its values) for every leg of each loop."""
         return _constants(self.p, name)[:2]
 
-    def zeros(self, size):
-        return [0.0] * size
+    def zeros(self, name):
+        return [0.0] * math.prod(_SHAPES[name])
 
     def added(self, sums, leg, terms):
         """Sums over the legs so far."""
         return [a + b for a, b in zip(sums, terms)]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(shape)), np.nan) for shape in shapes]
+        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
         for k in range(self.states):
             try:
@@ -797,7 +862,7 @@ class _Floats:
             if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
                 for a, array in zip(found, arrays):
                     a[k] = array
-        return [a.T.reshape(*shape, self.states) for a, shape in zip(found, shapes)]
+        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
 
 
 class _Arrays:
@@ -813,8 +878,8 @@ class _Arrays:
         shared, _, columns = _constants(self.p, name)
         return shared, columns
 
-    def zeros(self, size):
-        return np.zeros((size, self.states))
+    def zeros(self, name):
+        return np.zeros((math.prod(_SHAPES[name]), self.states))
 
     def every(self, good):
         """Whether it holds for all legs."""
@@ -825,7 +890,7 @@ class _Arrays:
         shape = (legs.stop, self.states)
         return [np.add.reduce(np.broadcast_to(t, shape), axis=0) for t in terms]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
         ok, arrays = function(self, *vectors)
         for a in arrays:
@@ -833,7 +898,7 @@ class _Arrays:
         if not np.all(ok):
             for a in arrays:
                 a[:, ~ok] = np.nan
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
 
 class _Judged(_Arrays):
@@ -843,12 +908,12 @@ class _Judged(_Arrays):
         super().__init__(p, states)
         self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
         (valid, reached, clear), arrays = function(self, *vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
             self.failed[code] |= ~np.broadcast_to(good, self.states)
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -1251,9 +1316,9 @@ def _run_dynamics(m, X, V):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_M = m.zeros(36)
-    out_Z = m.zeros(6)
-    out_H = m.zeros(36)
+    out_M = m.zeros("M")
+    out_Z = m.zeros("Z")
+    out_H = m.zeros("H")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -1627,18 +1692,18 @@ def _run_dynamics(m, X, V):
             M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6, U_in_base_x, U_in_base_y, U_in_base_z,
             Z_a_t, Z_a_t_2, Z_a_t_3,
         ))
-        out_H[[0, 2, 4][leg]] = w_1_t_3
-        out_H[[6, 8, 10][leg]] = w_1_t_4
-        out_H[[12, 14, 16][leg]] = w_1_t_5
-        out_H[[18, 20, 22][leg]] = H_a_1_x
-        out_H[[24, 26, 28][leg]] = H_a_1_y
-        out_H[[30, 32, 34][leg]] = H_a_1_z
-        out_H[[1, 3, 5][leg]] = w_2_in_base_x
-        out_H[[7, 9, 11][leg]] = w_2_in_base_y
-        out_H[[13, 15, 17][leg]] = w_2_in_base_z
-        out_H[[19, 21, 23][leg]] = H_a_2_x
-        out_H[[25, 27, 29][leg]] = H_a_2_y
-        out_H[[31, 33, 35][leg]] = H_a_2_z
+        out_H[_H_rprs[0][leg]] = w_1_t_3
+        out_H[_H_rprs[1][leg]] = w_1_t_4
+        out_H[_H_rprs[2][leg]] = w_1_t_5
+        out_H[_H_rprs[3][leg]] = H_a_1_x
+        out_H[_H_rprs[4][leg]] = H_a_1_y
+        out_H[_H_rprs[5][leg]] = H_a_1_z
+        out_H[_H_rprs[6][leg]] = w_2_in_base_x
+        out_H[_H_rprs[7][leg]] = w_2_in_base_y
+        out_H[_H_rprs[8][leg]] = w_2_in_base_z
+        out_H[_H_rprs[9][leg]] = H_a_2_x
+        out_H[_H_rprs[10][leg]] = H_a_2_y
+        out_H[_H_rprs[11][leg]] = H_a_2_z
     (
     total_rprs_xx, total_rprs_xy, total_rprs_xz, total_rprs_yy, total_rprs_yz, total_rprs_zz,
         total_rprs_xx_2, total_rprs_xy_2, total_rprs_xz_2, total_rprs_yx, total_rprs_yy_2,
@@ -1761,7 +1826,7 @@ def _run_M(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_M = m.zeros(36)
+    out_M = m.zeros("M")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -2082,7 +2147,7 @@ def _run_Z(m, X, V):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_Z = m.zeros(6)
+    out_Z = m.zeros("Z")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -2396,7 +2461,7 @@ def _run_H(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_H = m.zeros(36)
+    out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
         branch_1, branch_2, inv_size_t, rprs_base_frame_xx, rprs_base_frame_xy,
@@ -2504,18 +2569,18 @@ def _run_H(m, X):
         ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_2) & (disc_2 >= 0.0) &
             (abs(v_1_z) > _TOLERANCE * size) & (abs(-r_1_t_2) > _TOLERANCE * size))
         )
-        out_H[[0, 2, 4][leg]] = w_1_t_3
-        out_H[[6, 8, 10][leg]] = w_1_t_4
-        out_H[[12, 14, 16][leg]] = w_1_t_5
-        out_H[[18, 20, 22][leg]] = H_a_1_x
-        out_H[[24, 26, 28][leg]] = H_a_1_y
-        out_H[[30, 32, 34][leg]] = H_a_1_z
-        out_H[[1, 3, 5][leg]] = w_2_in_base_x
-        out_H[[7, 9, 11][leg]] = w_2_in_base_y
-        out_H[[13, 15, 17][leg]] = w_2_in_base_z
-        out_H[[19, 21, 23][leg]] = H_a_2_x
-        out_H[[25, 27, 29][leg]] = H_a_2_y
-        out_H[[31, 33, 35][leg]] = H_a_2_z
+        out_H[_H_rprs[0][leg]] = w_1_t_3
+        out_H[_H_rprs[1][leg]] = w_1_t_4
+        out_H[_H_rprs[2][leg]] = w_1_t_5
+        out_H[_H_rprs[3][leg]] = H_a_1_x
+        out_H[_H_rprs[4][leg]] = H_a_1_y
+        out_H[_H_rprs[5][leg]] = H_a_1_z
+        out_H[_H_rprs[6][leg]] = w_2_in_base_x
+        out_H[_H_rprs[7][leg]] = w_2_in_base_y
+        out_H[_H_rprs[8][leg]] = w_2_in_base_z
+        out_H[_H_rprs[9][leg]] = H_a_2_x
+        out_H[_H_rprs[10][leg]] = H_a_2_y
+        out_H[_H_rprs[11][leg]] = H_a_2_z
     return ok, (out_H,)
 
 
@@ -2589,8 +2654,8 @@ def _run_required(m, X, V, A):
     alpha_z = A_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_required = m.zeros(6)
-    out_H = m.zeros(36)
+    out_required = m.zeros("required")
+    out_H = m.zeros("H")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -2894,18 +2959,18 @@ def _run_required(m, X, V, A):
         sums = m.added(sums, leg, (
         c_in_base_x, c_in_base_y, c_in_base_z, R_a_t, R_a_t_2, R_a_t_3,
         ))
-        out_H[[0, 2, 4][leg]] = w_1_t_3
-        out_H[[6, 8, 10][leg]] = w_1_t_4
-        out_H[[12, 14, 16][leg]] = w_1_t_5
-        out_H[[18, 20, 22][leg]] = H_a_1_x
-        out_H[[24, 26, 28][leg]] = H_a_1_y
-        out_H[[30, 32, 34][leg]] = H_a_1_z
-        out_H[[1, 3, 5][leg]] = w_2_in_base_x
-        out_H[[7, 9, 11][leg]] = w_2_in_base_y
-        out_H[[13, 15, 17][leg]] = w_2_in_base_z
-        out_H[[19, 21, 23][leg]] = H_a_2_x
-        out_H[[25, 27, 29][leg]] = H_a_2_y
-        out_H[[31, 33, 35][leg]] = H_a_2_z
+        out_H[_H_rprs[0][leg]] = w_1_t_3
+        out_H[_H_rprs[1][leg]] = w_1_t_4
+        out_H[_H_rprs[2][leg]] = w_1_t_5
+        out_H[_H_rprs[3][leg]] = H_a_1_x
+        out_H[_H_rprs[4][leg]] = H_a_1_y
+        out_H[_H_rprs[5][leg]] = H_a_1_z
+        out_H[_H_rprs[6][leg]] = w_2_in_base_x
+        out_H[_H_rprs[7][leg]] = w_2_in_base_y
+        out_H[_H_rprs[8][leg]] = w_2_in_base_z
+        out_H[_H_rprs[9][leg]] = H_a_2_x
+        out_H[_H_rprs[10][leg]] = H_a_2_y
+        out_H[_H_rprs[11][leg]] = H_a_2_z
     (
     total_rprs_x, total_rprs_y, total_rprs_z, total_rprs_x_2, total_rprs_y_2, total_rprs_z_2,
     ) = sums
@@ -2967,7 +3032,7 @@ def _run_inverse_kinematics(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_q = m.zeros(9)
+    out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
         branch_1, branch_2, inv_size_t, rprs_base_frame_xx, rprs_base_frame_xy,
@@ -3018,9 +3083,9 @@ def _run_inverse_kinematics(m, X):
             inv_size_t*rprs_platform_joint_offset_x*x_3_z)
         )
         ok = ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_2) & (disc_2 >= 0.0))
-        out_q[[0, 3, 6][leg]] = q_1
-        out_q[[1, 4, 7][leg]] = q_2
-        out_q[[2, 5, 8][leg]] = q_3
+        out_q[_q_rprs[0][leg]] = q_1
+        out_q[_q_rprs[1][leg]] = q_2
+        out_q[_q_rprs[2][leg]] = q_3
     return ok, (out_q,)
 
 
@@ -3077,7 +3142,7 @@ def _run_joint_rates(m, X, V):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_qd = m.zeros(9)
+    out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
         branch_1, branch_2, inv_size_t, rprs_base_frame_xx, rprs_base_frame_xy,
@@ -3154,9 +3219,9 @@ def _run_joint_rates(m, X, V):
         ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_2) & (disc_2 >= 0.0) &
             (abs(v_1_z) > _TOLERANCE * size) & (abs(-r_1_t_2) > _TOLERANCE * size))
         )
-        out_qd[[0, 3, 6][leg]] = qd_1
-        out_qd[[1, 4, 7][leg]] = qd_1_t
-        out_qd[[2, 5, 8][leg]] = -qd_3
+        out_qd[_qd_rprs[0][leg]] = qd_1
+        out_qd[_qd_rprs[1][leg]] = qd_1_t
+        out_qd[_qd_rprs[2][leg]] = -qd_3
     return ok, (out_qd,)
 
 
@@ -3226,7 +3291,7 @@ def _run_joint_accelerations(m, X, V, A):
     alpha_z = A_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_qdd = m.zeros(9)
+    out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
         branch_1, branch_2, inv_size_t, rprs_base_frame_xx, rprs_base_frame_xy,
@@ -3369,9 +3434,9 @@ def _run_joint_accelerations(m, X, V, A):
         ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_2) & (disc_2 >= 0.0) &
             (abs(v_1_z) > _TOLERANCE * size) & (abs(-r_1_t_2) > _TOLERANCE * size))
         )
-        out_qdd[[0, 3, 6][leg]] = qdd_1
-        out_qdd[[1, 4, 7][leg]] = -qdd_1_t
-        out_qdd[[2, 5, 8][leg]] = -qdd_3
+        out_qdd[_qdd_rprs[0][leg]] = qdd_1
+        out_qdd[_qdd_rprs[1][leg]] = -qdd_1_t
+        out_qdd[_qdd_rprs[2][leg]] = -qdd_3
     return ok, (out_qdd,)
 
 
@@ -3441,8 +3506,8 @@ def _run_legs(m, X, V, A):
     alpha_z = A_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_leg_force = m.zeros(9)
-    out_drive = m.zeros(18)
+    out_leg_force = m.zeros("leg_force")
+    out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
         J_2_xx, J_3_xy, J_3_xz, J_3_yz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2,
@@ -3676,15 +3741,15 @@ def _run_legs(m, X, V, A):
         ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_2) & (disc_2 >= 0.0) &
             (abs(v_1_z) > _TOLERANCE * size) & (abs(-r_1_t_2) > _TOLERANCE * size))
         )
-        out_leg_force[[0, 3, 6][leg]] = c_true_in_base_x
-        out_leg_force[[1, 4, 7][leg]] = c_true_in_base_y
-        out_leg_force[[2, 5, 8][leg]] = c_true_in_base_z
-        out_drive[[0, 6, 12][leg]] = w_1_t_3
-        out_drive[[1, 7, 13][leg]] = w_1_t_4
-        out_drive[[2, 8, 14][leg]] = w_1_t_5
-        out_drive[[3, 9, 15][leg]] = w_2_in_base_x
-        out_drive[[4, 10, 16][leg]] = w_2_in_base_y
-        out_drive[[5, 11, 17][leg]] = w_2_in_base_z
+        out_leg_force[_leg_force_rprs[0][leg]] = c_true_in_base_x
+        out_leg_force[_leg_force_rprs[1][leg]] = c_true_in_base_y
+        out_leg_force[_leg_force_rprs[2][leg]] = c_true_in_base_z
+        out_drive[_drive_rprs[0][leg]] = w_1_t_3
+        out_drive[_drive_rprs[1][leg]] = w_1_t_4
+        out_drive[_drive_rprs[2][leg]] = w_1_t_5
+        out_drive[_drive_rprs[3][leg]] = w_2_in_base_x
+        out_drive[_drive_rprs[4][leg]] = w_2_in_base_y
+        out_drive[_drive_rprs[5][leg]] = w_2_in_base_z
     return ok, (out_leg_force, out_drive,)
 
 
@@ -3729,7 +3794,7 @@ def _run_potential(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_potential = m.zeros(1)
+    out_potential = m.zeros("potential")
     # (V1) potential energy
     potential_t = (
     gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + m_star*t_x) +
@@ -3849,10 +3914,10 @@ def _run_condition(m, X):
     reached = True
     clear = True
     valid = valid & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_H = m.zeros(36)
-    out_lengths = m.zeros(2)
-    out_pivots = m.zeros(3)
-    out_reach = m.zeros(3)
+    out_H = m.zeros("H")
+    out_lengths = m.zeros("lengths")
+    out_pivots = m.zeros("pivots")
+    out_reach = m.zeros("reach")
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
@@ -3980,20 +4045,20 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         spread_t_5,
         ))
-        out_H[[0, 2, 4][leg]] = w_1_t_3
-        out_H[[6, 8, 10][leg]] = w_1_t_4
-        out_H[[12, 14, 16][leg]] = w_1_t_5
-        out_H[[18, 20, 22][leg]] = H_a_1_x
-        out_H[[24, 26, 28][leg]] = H_a_1_y
-        out_H[[30, 32, 34][leg]] = H_a_1_z
-        out_H[[1, 3, 5][leg]] = w_2_in_base_x
-        out_H[[7, 9, 11][leg]] = w_2_in_base_y
-        out_H[[13, 15, 17][leg]] = w_2_in_base_z
-        out_H[[19, 21, 23][leg]] = H_a_2_x
-        out_H[[25, 27, 29][leg]] = H_a_2_y
-        out_H[[31, 33, 35][leg]] = H_a_2_z
-        out_pivots[[0, 1, 2][leg]] = least_pivots
-        out_reach[[0, 1, 2][leg]] = disc_2
+        out_H[_H_rprs[0][leg]] = w_1_t_3
+        out_H[_H_rprs[1][leg]] = w_1_t_4
+        out_H[_H_rprs[2][leg]] = w_1_t_5
+        out_H[_H_rprs[3][leg]] = H_a_1_x
+        out_H[_H_rprs[4][leg]] = H_a_1_y
+        out_H[_H_rprs[5][leg]] = H_a_1_z
+        out_H[_H_rprs[6][leg]] = w_2_in_base_x
+        out_H[_H_rprs[7][leg]] = w_2_in_base_y
+        out_H[_H_rprs[8][leg]] = w_2_in_base_z
+        out_H[_H_rprs[9][leg]] = H_a_2_x
+        out_H[_H_rprs[10][leg]] = H_a_2_y
+        out_H[_H_rprs[11][leg]] = H_a_2_z
+        out_pivots[_pivots_rprs[0][leg]] = least_pivots
+        out_reach[_reach_rprs[0][leg]] = disc_2
     total_rprs, = sums
     # (C2) rms distance of the platform points from their centroid
     spread = spread_t*sqrt(total_rprs)
@@ -4006,44 +4071,42 @@ _DEFAULT = Parameters()
 
 
 def _steps_M(m, X):
-    M_of_M, = m.run(_run_M, ((6, 6),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
     return (M_of_M,)
 
 
 def _steps_Z(m, X, V):
-    Z_of_Z, = m.run(_run_Z, ((6,),), X, V)
+    Z_of_Z, = m.run(_run_Z, ("Z",), X, V)
     return (Z_of_Z,)
 
 
 def _steps_H(m, X):
-    H_of_H, = m.run(_run_H, ((6, 6),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 
 def _steps_inverse_kinematics(m, X):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((9,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     return (q_of_inverse_kinematics,)
 
 
 def _steps_joint_rates(m, X, V):
-    qd_of_joint_rates, = m.run(_run_joint_rates, ((9,),), X, V)
+    qd_of_joint_rates, = m.run(_run_joint_rates, ("qd",), X, V)
     return (qd_of_joint_rates,)
 
 
 def _steps_joint_accelerations(m, X, V, A):
-    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ((9,),), X, V, A)
+    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
     return (qdd_of_joint_accelerations,)
 
 
 def _steps_dynamics(m, X, V):
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((6, 6), (6,), (6, 6)), X, V)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
 
 
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
-    required_of_required, H_of_required = m.run(_run_required, ((6,), (6, 6)), X, V, A)
+    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     solve_3 = _solve(H_of_required, subtract_2)
@@ -4051,9 +4114,7 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((6, 6), (6,), (6, 6)), X, V)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
     extend_2 = wrench
     add_3 = times_1 + extend_2
@@ -4068,25 +4129,25 @@ def _steps_complete_acceleration(m, X, V, A, wrench):
 
 
 def _steps_leg_reactions(m, X, V, A, wrench):
-    required_of_required, H_of_required = m.run(_run_required, ((6,), (6, 6)), X, V, A)
+    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     solve_3 = _solve(H_of_required, subtract_2)
-    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ((3, 3), (6, 3)), X, V, A)
+    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
     add_forces_4 = _with_forces(leg_force_of_legs, solve_3, drive_of_legs, [0, 0, 1, 1, 2, 2])
     return (add_forces_4,)
 
 
 def _steps_energy(m, X, V):
-    M_of_M, = m.run(_run_M, ((6, 6),), X)
-    potential_of_potential, = m.run(_run_potential, ((1,),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
+    potential_of_potential, = m.run(_run_potential, ("potential",), X)
     half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
     entry_2 = potential_of_potential[0]
     return (half_form_1, entry_2,)
 
 
 def _steps_null_space(m, X):
-    H_of_H, = m.run(_run_H, ((6, 6),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     null_basis_1 = _null_basis(H_of_H, 6)
     return (null_basis_1,)
 
@@ -4094,7 +4155,7 @@ def _steps_null_space(m, X):
 def _steps_condition(m, X, length):
     (
     H_of_condition, lengths_of_condition, pivots_of_condition, reach_of_condition,
-    ) = m.run(_run_condition, ((6, 6), (2,), (3,), (3,)), X)
+    ) = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
     choose_length_1 = _chosen_length(lengths_of_condition, length)
     divide_rows_2 = _rows_divided(H_of_condition, choose_length_1, [3, 4, 5])
     singular_values_3 = _singular_values(divide_rows_2)
@@ -4102,7 +4163,7 @@ def _steps_condition(m, X, length):
 
 
 def _steps_mismatch(m, X, q_actuated):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((9,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     take_1 = q_of_inverse_kinematics[[0, 1, 3, 4, 6, 7]]
     subtract_2 = q_actuated - take_1
     wrap_turns_3 = _wrapped(subtract_2, [0, 2, 4])
@@ -4110,7 +4171,7 @@ def _steps_mismatch(m, X, q_actuated):
 
 
 def _steps_slope(m, X):
-    H_of_H, = m.run(_run_H, ((6, 6),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 

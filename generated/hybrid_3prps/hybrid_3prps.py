@@ -67,6 +67,67 @@ NJ = 9
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
 
+_SHAPES = {  # of the arrays that functions give
+    "M": (6, 6),
+    "Z": (6,),
+    "H": (6, 6),
+    "required": (6,),
+    "q": (9,),
+    "qd": (9,),
+    "qdd": (9,),
+    "leg_force": (3, 3),
+    "drive": (6, 3),
+    "potential": (1,),
+    "lengths": (2,),
+    "pivots": (3,),
+    "reach": (3,),
+}
+# Where the entries of a leg type's legs stand in these arrays, row by row.
+_H_prps = (
+    [0, 2, 4],
+    [6, 8, 10],
+    [12, 14, 16],
+    [18, 20, 22],
+    [24, 26, 28],
+    [30, 32, 34],
+    [1, 3, 5],
+    [7, 9, 11],
+    [13, 15, 17],
+    [19, 21, 23],
+    [25, 27, 29],
+    [31, 33, 35],
+)
+_q_prps = (
+    [0, 3, 6],
+    [1, 4, 7],
+    [2, 5, 8],
+)
+_qd_prps = (
+    [0, 3, 6],
+    [1, 4, 7],
+    [2, 5, 8],
+)
+_qdd_prps = (
+    [0, 3, 6],
+    [1, 4, 7],
+    [2, 5, 8],
+)
+_leg_force_prps = (
+    [0, 3, 6],
+    [1, 4, 7],
+    [2, 5, 8],
+)
+_drive_prps = (
+    [0, 6, 12],
+    [1, 7, 13],
+    [2, 8, 14],
+    [3, 9, 15],
+    [4, 10, 16],
+    [5, 11, 17],
+)
+_pivots_prps = (
+    [0, 1, 2],
+)
 _DRIVEN_JOINTS = (0, 2, 3, 5, 6, 8)
 
 _DEFAULTS = {
@@ -392,6 +453,7 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _prps = 3
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     gravity_z = p.gravity[2]
@@ -541,19 +603,19 @@ def _prepare(p):
     potential_t_2 = b_r0_y*prps_link1_mass
     potential_t_3 = b_r0_x*prps_link2_mass
     potential_t_4 = b_r0_y*prps_link2_mass
-    total_prps = np.sum(np.broadcast_to(prps_link3_mass, 3))
-    total_prps_x = np.sum(np.broadcast_to(h_star_t_4, 3))
-    total_prps_y = np.sum(np.broadcast_to(h_star_t_5, 3))
-    total_prps_z = np.sum(np.broadcast_to(h_star_t_6, 3))
-    total_prps_xx = np.sum(np.broadcast_to(J_star_t_15, 3))
-    total_prps_xy = np.sum(np.broadcast_to(J_star_t_16, 3))
-    total_prps_xz = np.sum(np.broadcast_to(J_star_t_17, 3))
-    total_prps_yy = np.sum(np.broadcast_to(J_star_t_18, 3))
-    total_prps_yz = np.sum(np.broadcast_to(J_star_t_19, 3))
-    total_prps_zz = np.sum(np.broadcast_to(J_star_t_20, 3))
-    total_prps_x_2 = np.sum(np.broadcast_to(prps_platform_point_x, 3))
-    total_prps_y_2 = np.sum(np.broadcast_to(prps_platform_point_y, 3))
-    total_prps_z_2 = np.sum(np.broadcast_to(prps_platform_point_z, 3))
+    total_prps = np.sum(np.broadcast_to(prps_link3_mass, _prps))
+    total_prps_x = np.sum(np.broadcast_to(h_star_t_4, _prps))
+    total_prps_y = np.sum(np.broadcast_to(h_star_t_5, _prps))
+    total_prps_z = np.sum(np.broadcast_to(h_star_t_6, _prps))
+    total_prps_xx = np.sum(np.broadcast_to(J_star_t_15, _prps))
+    total_prps_xy = np.sum(np.broadcast_to(J_star_t_16, _prps))
+    total_prps_xz = np.sum(np.broadcast_to(J_star_t_17, _prps))
+    total_prps_yy = np.sum(np.broadcast_to(J_star_t_18, _prps))
+    total_prps_yz = np.sum(np.broadcast_to(J_star_t_19, _prps))
+    total_prps_zz = np.sum(np.broadcast_to(J_star_t_20, _prps))
+    total_prps_x_2 = np.sum(np.broadcast_to(prps_platform_point_x, _prps))
+    total_prps_y_2 = np.sum(np.broadcast_to(prps_platform_point_y, _prps))
+    total_prps_z_2 = np.sum(np.broadcast_to(prps_platform_point_z, _prps))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_prps
     # (L2) first moment about the platform origin
@@ -585,7 +647,7 @@ def _prepare(p):
                 J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x,
                 h_star_y, h_star_z, m_star,),
             (
-                (3,
+                (_prps,
         (Jc_2_zz, Q_t_10, Q_t_11, Q_t_12, Q_t_13, Q_t_5, Q_t_6, Q_t_7, Q_t_8, Q_t_9, branch_2,
                     g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_3_x, h_3_y, prps_base_frame_xx,
                     prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
@@ -600,7 +662,7 @@ def _prepare(p):
         (J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
                 h_star_z, m_star,),
             (
-                (3,
+                (_prps,
         (Jc_2_zz, Q_t_10, Q_t_11, Q_t_12, Q_t_13, Q_t_5, Q_t_6, Q_t_7, Q_t_8, Q_t_9, branch_2,
                     h_3_x, h_3_y, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_yx,
                     prps_base_frame_yy, prps_base_frame_zx, prps_base_frame_zy, prps_base_point_x,
@@ -613,7 +675,7 @@ def _prepare(p):
         (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2,
                 Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
             (
-                (3,
+                (_prps,
         (Jc_2_zz, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_3_x, h_3_y,
                     prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
                     prps_base_frame_yx, prps_base_frame_yy, prps_base_frame_yz,
@@ -626,7 +688,7 @@ def _prepare(p):
         "H": (
         (),
             (
-                (3,
+                (_prps,
         (branch_2, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
                     prps_base_frame_yy, prps_base_frame_yz, prps_base_frame_zx,
                     prps_base_frame_zy, prps_base_frame_zz, prps_base_point_x, prps_base_point_y,
@@ -639,7 +701,7 @@ def _prepare(p):
         (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
                 gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
-                (3,
+                (_prps,
         (Jc_2_zz, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_3_x, h_3_y,
                     prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
                     prps_base_frame_yx, prps_base_frame_yy, prps_base_frame_yz,
@@ -652,7 +714,7 @@ def _prepare(p):
         "inverse_kinematics": (
         (),
             (
-                (3,
+                (_prps,
         (branch_2, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
                     prps_base_frame_yy, prps_base_frame_yz, prps_base_frame_zx,
                     prps_base_frame_zy, prps_base_frame_zz, prps_base_point_x, prps_base_point_y,
@@ -664,7 +726,7 @@ def _prepare(p):
         "joint_rates": (
         (),
             (
-                (3,
+                (_prps,
         (branch_2, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
                     prps_base_frame_yy, prps_base_frame_yz, prps_base_frame_zx,
                     prps_base_frame_zy, prps_base_frame_zz, prps_base_point_x, prps_base_point_y,
@@ -676,7 +738,7 @@ def _prepare(p):
         "joint_accelerations": (
         (),
             (
-                (3,
+                (_prps,
         (branch_2, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
                     prps_base_frame_yy, prps_base_frame_yz, prps_base_frame_zx,
                     prps_base_frame_zy, prps_base_frame_zz, prps_base_point_x, prps_base_point_y,
@@ -688,7 +750,7 @@ def _prepare(p):
         "legs": (
         (),
             (
-                (3,
+                (_prps,
         (Jc_2_zz, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_3_x, h_3_y,
                     prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
                     prps_base_frame_yx, prps_base_frame_yy, prps_base_frame_yz,
@@ -702,7 +764,7 @@ def _prepare(p):
         "potential": (
         (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
-                (3,
+                (_prps,
         (b_r0_z, branch_2, g_r0_x, g_r0_y, g_r0_z, h_1_x, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z,
                     h_3_x, h_3_y, h_3_z, potential_t, potential_t_2, potential_t_3, potential_t_4,
                     prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
@@ -716,7 +778,7 @@ def _prepare(p):
         "condition": (
         (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
             (
-                (3,
+                (_prps,
         (branch_2, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
                     prps_base_frame_yy, prps_base_frame_yz, prps_base_frame_zx,
                     prps_base_frame_zy, prps_base_frame_zz, prps_base_point_x, prps_base_point_y,
@@ -765,16 +827,16 @@ class _Floats:
         """Shared values, and (leg, its values) for every leg of each loop."""
         return _constants(self.p, name)[:2]
 
-    def zeros(self, size):
-        return [0.0] * size
+    def zeros(self, name):
+        return [0.0] * math.prod(_SHAPES[name])
 
     def added(self, sums, leg, terms):
         """Sums over the legs so far."""
         return [a + b for a, b in zip(sums, terms)]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(shape)), np.nan) for shape in shapes]
+        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
         for k in range(self.states):
             try:
@@ -784,7 +846,7 @@ class _Floats:
             if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
                 for a, array in zip(found, arrays):
                     a[k] = array
-        return [a.T.reshape(*shape, self.states) for a, shape in zip(found, shapes)]
+        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
 
 
 class _Arrays:
@@ -800,8 +862,8 @@ class _Arrays:
         shared, _, columns = _constants(self.p, name)
         return shared, columns
 
-    def zeros(self, size):
-        return np.zeros((size, self.states))
+    def zeros(self, name):
+        return np.zeros((math.prod(_SHAPES[name]), self.states))
 
     def every(self, good):
         """Whether it holds for all legs."""
@@ -812,7 +874,7 @@ class _Arrays:
         shape = (legs.stop, self.states)
         return [np.add.reduce(np.broadcast_to(t, shape), axis=0) for t in terms]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
         ok, arrays = function(self, *vectors)
         for a in arrays:
@@ -820,7 +882,7 @@ class _Arrays:
         if not np.all(ok):
             for a in arrays:
                 a[:, ~ok] = np.nan
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
 
 class _Judged(_Arrays):
@@ -830,12 +892,12 @@ class _Judged(_Arrays):
         super().__init__(p, states)
         self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
         (valid, reached, clear), arrays = function(self, *vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
             self.failed[code] |= ~np.broadcast_to(good, self.states)
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -1231,9 +1293,9 @@ def _run_dynamics(m, X, V):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_M = m.zeros(36)
-    out_Z = m.zeros(6)
-    out_H = m.zeros(36)
+    out_M = m.zeros("M")
+    out_Z = m.zeros("Z")
+    out_H = m.zeros("H")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -1457,18 +1519,18 @@ def _run_dynamics(m, X, V):
             M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6, U_in_base_x, U_in_base_y, U_in_base_z,
             Z_a_t, Z_a_t_2, Z_a_t_3,
         ))
-        out_H[[0, 2, 4][leg]] = prps_base_frame_xz
-        out_H[[6, 8, 10][leg]] = prps_base_frame_yz
-        out_H[[12, 14, 16][leg]] = prps_base_frame_zz
-        out_H[[18, 20, 22][leg]] = H_a_1_x
-        out_H[[24, 26, 28][leg]] = H_a_1_y
-        out_H[[30, 32, 34][leg]] = H_a_1_z
-        out_H[[1, 3, 5][leg]] = axis_x_prps_axes2_in_base_x
-        out_H[[7, 9, 11][leg]] = axis_x_prps_axes2_in_base_y
-        out_H[[13, 15, 17][leg]] = axis_x_prps_axes2_in_base_z
-        out_H[[19, 21, 23][leg]] = H_a_3_x
-        out_H[[25, 27, 29][leg]] = H_a_3_y
-        out_H[[31, 33, 35][leg]] = H_a_3_z
+        out_H[_H_prps[0][leg]] = prps_base_frame_xz
+        out_H[_H_prps[1][leg]] = prps_base_frame_yz
+        out_H[_H_prps[2][leg]] = prps_base_frame_zz
+        out_H[_H_prps[3][leg]] = H_a_1_x
+        out_H[_H_prps[4][leg]] = H_a_1_y
+        out_H[_H_prps[5][leg]] = H_a_1_z
+        out_H[_H_prps[6][leg]] = axis_x_prps_axes2_in_base_x
+        out_H[_H_prps[7][leg]] = axis_x_prps_axes2_in_base_y
+        out_H[_H_prps[8][leg]] = axis_x_prps_axes2_in_base_z
+        out_H[_H_prps[9][leg]] = H_a_3_x
+        out_H[_H_prps[10][leg]] = H_a_3_y
+        out_H[_H_prps[11][leg]] = H_a_3_z
     (
     total_prps_xx, total_prps_xy, total_prps_xz, total_prps_yy, total_prps_yz, total_prps_zz,
         total_prps_xx_2, total_prps_xy_2, total_prps_xz_2, total_prps_yx, total_prps_yy_2,
@@ -1591,7 +1653,7 @@ def _run_M(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_M = m.zeros(36)
+    out_M = m.zeros("M")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -1829,7 +1891,7 @@ def _run_Z(m, X, V):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_Z = m.zeros(6)
+    out_Z = m.zeros("Z")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -2034,7 +2096,7 @@ def _run_H(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_H = m.zeros(36)
+    out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
         branch_2, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
@@ -2085,18 +2147,18 @@ def _run_H(m, X):
         axis_x_prps_axes2_in_base_y*q_in_base_x - axis_x_prps_axes2_in_base_x*q_in_base_y
         )
         ok = ok & m.every((abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625))
-        out_H[[0, 2, 4][leg]] = prps_base_frame_xz
-        out_H[[6, 8, 10][leg]] = prps_base_frame_yz
-        out_H[[12, 14, 16][leg]] = prps_base_frame_zz
-        out_H[[18, 20, 22][leg]] = H_a_1_x
-        out_H[[24, 26, 28][leg]] = H_a_1_y
-        out_H[[30, 32, 34][leg]] = H_a_1_z
-        out_H[[1, 3, 5][leg]] = axis_x_prps_axes2_in_base_x
-        out_H[[7, 9, 11][leg]] = axis_x_prps_axes2_in_base_y
-        out_H[[13, 15, 17][leg]] = axis_x_prps_axes2_in_base_z
-        out_H[[19, 21, 23][leg]] = H_a_3_x
-        out_H[[25, 27, 29][leg]] = H_a_3_y
-        out_H[[31, 33, 35][leg]] = H_a_3_z
+        out_H[_H_prps[0][leg]] = prps_base_frame_xz
+        out_H[_H_prps[1][leg]] = prps_base_frame_yz
+        out_H[_H_prps[2][leg]] = prps_base_frame_zz
+        out_H[_H_prps[3][leg]] = H_a_1_x
+        out_H[_H_prps[4][leg]] = H_a_1_y
+        out_H[_H_prps[5][leg]] = H_a_1_z
+        out_H[_H_prps[6][leg]] = axis_x_prps_axes2_in_base_x
+        out_H[_H_prps[7][leg]] = axis_x_prps_axes2_in_base_y
+        out_H[_H_prps[8][leg]] = axis_x_prps_axes2_in_base_z
+        out_H[_H_prps[9][leg]] = H_a_3_x
+        out_H[_H_prps[10][leg]] = H_a_3_y
+        out_H[_H_prps[11][leg]] = H_a_3_z
     return ok, (out_H,)
 
 
@@ -2170,8 +2232,8 @@ def _run_required(m, X, V, A):
     alpha_z = A_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_required = m.zeros(6)
-    out_H = m.zeros(36)
+    out_required = m.zeros("required")
+    out_H = m.zeros("H")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -2362,18 +2424,18 @@ def _run_required(m, X, V, A):
         sums = m.added(sums, leg, (
         c_in_base_x, c_in_base_y, c_in_base_z, R_a_t, R_a_t_2, R_a_t_3,
         ))
-        out_H[[0, 2, 4][leg]] = prps_base_frame_xz
-        out_H[[6, 8, 10][leg]] = prps_base_frame_yz
-        out_H[[12, 14, 16][leg]] = prps_base_frame_zz
-        out_H[[18, 20, 22][leg]] = H_a_1_x
-        out_H[[24, 26, 28][leg]] = H_a_1_y
-        out_H[[30, 32, 34][leg]] = H_a_1_z
-        out_H[[1, 3, 5][leg]] = axis_x_prps_axes2_in_base_x
-        out_H[[7, 9, 11][leg]] = axis_x_prps_axes2_in_base_y
-        out_H[[13, 15, 17][leg]] = axis_x_prps_axes2_in_base_z
-        out_H[[19, 21, 23][leg]] = H_a_3_x
-        out_H[[25, 27, 29][leg]] = H_a_3_y
-        out_H[[31, 33, 35][leg]] = H_a_3_z
+        out_H[_H_prps[0][leg]] = prps_base_frame_xz
+        out_H[_H_prps[1][leg]] = prps_base_frame_yz
+        out_H[_H_prps[2][leg]] = prps_base_frame_zz
+        out_H[_H_prps[3][leg]] = H_a_1_x
+        out_H[_H_prps[4][leg]] = H_a_1_y
+        out_H[_H_prps[5][leg]] = H_a_1_z
+        out_H[_H_prps[6][leg]] = axis_x_prps_axes2_in_base_x
+        out_H[_H_prps[7][leg]] = axis_x_prps_axes2_in_base_y
+        out_H[_H_prps[8][leg]] = axis_x_prps_axes2_in_base_z
+        out_H[_H_prps[9][leg]] = H_a_3_x
+        out_H[_H_prps[10][leg]] = H_a_3_y
+        out_H[_H_prps[11][leg]] = H_a_3_z
     (
     total_prps_x, total_prps_y, total_prps_z, total_prps_x_2, total_prps_y_2, total_prps_z_2,
     ) = sums
@@ -2435,7 +2497,7 @@ def _run_inverse_kinematics(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_q = m.zeros(9)
+    out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
         branch_2, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
@@ -2470,9 +2532,9 @@ def _run_inverse_kinematics(m, X):
         # (prps-K11) displacement of joint 2
         q_2 = atan2(S_r0_y*inv_root_2, S_r0_x*inv_root_2)
         ok = ok & m.every((abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625))
-        out_q[[0, 3, 6][leg]] = q_1_t
-        out_q[[1, 4, 7][leg]] = q_2
-        out_q[[2, 5, 8][leg]] = root_2
+        out_q[_q_prps[0][leg]] = q_1_t
+        out_q[_q_prps[1][leg]] = q_2
+        out_q[_q_prps[2][leg]] = root_2
     return ok, (out_q,)
 
 
@@ -2529,7 +2591,7 @@ def _run_joint_rates(m, X, V):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_qd = m.zeros(9)
+    out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
         branch_2, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
@@ -2583,9 +2645,9 @@ def _run_joint_rates(m, X, V):
         ok & m.every((abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(root_2) > _TOLERANCE
             * 0.75))
         )
-        out_qd[[0, 3, 6][leg]] = S_dot_tip_z
-        out_qd[[1, 4, 7][leg]] = qd_2
-        out_qd[[2, 5, 8][leg]] = S_dot_tip_x
+        out_qd[_qd_prps[0][leg]] = S_dot_tip_z
+        out_qd[_qd_prps[1][leg]] = qd_2
+        out_qd[_qd_prps[2][leg]] = S_dot_tip_x
     return ok, (out_qd,)
 
 
@@ -2655,7 +2717,7 @@ def _run_joint_accelerations(m, X, V, A):
     alpha_z = A_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_qdd = m.zeros(9)
+    out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
         branch_2, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
@@ -2736,9 +2798,9 @@ def _run_joint_accelerations(m, X, V, A):
         ok & m.every((abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(root_2) > _TOLERANCE
             * 0.75))
         )
-        out_qdd[[0, 3, 6][leg]] = S_ddot_tip_z
-        out_qdd[[1, 4, 7][leg]] = qdd_2
-        out_qdd[[2, 5, 8][leg]] = rel_x
+        out_qdd[_qdd_prps[0][leg]] = S_ddot_tip_z
+        out_qdd[_qdd_prps[1][leg]] = qdd_2
+        out_qdd[_qdd_prps[2][leg]] = rel_x
     return ok, (out_qdd,)
 
 
@@ -2808,8 +2870,8 @@ def _run_legs(m, X, V, A):
     alpha_z = A_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_leg_force = m.zeros(9)
-    out_drive = m.zeros(18)
+    out_leg_force = m.zeros("leg_force")
+    out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
         Jc_2_zz, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_3_x, h_3_y, prps_base_frame_xx,
@@ -2923,15 +2985,15 @@ def _run_legs(m, X, V, A):
         ok & m.every((abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(root_2) > _TOLERANCE
             * 0.75))
         )
-        out_leg_force[[0, 3, 6][leg]] = c_true_in_base_x
-        out_leg_force[[1, 4, 7][leg]] = c_true_in_base_y
-        out_leg_force[[2, 5, 8][leg]] = c_true_in_base_z
-        out_drive[[0, 6, 12][leg]] = prps_base_frame_xz
-        out_drive[[1, 7, 13][leg]] = prps_base_frame_yz
-        out_drive[[2, 8, 14][leg]] = prps_base_frame_zz
-        out_drive[[3, 9, 15][leg]] = axis_x_prps_axes2_in_base_x
-        out_drive[[4, 10, 16][leg]] = axis_x_prps_axes2_in_base_y
-        out_drive[[5, 11, 17][leg]] = axis_x_prps_axes2_in_base_z
+        out_leg_force[_leg_force_prps[0][leg]] = c_true_in_base_x
+        out_leg_force[_leg_force_prps[1][leg]] = c_true_in_base_y
+        out_leg_force[_leg_force_prps[2][leg]] = c_true_in_base_z
+        out_drive[_drive_prps[0][leg]] = prps_base_frame_xz
+        out_drive[_drive_prps[1][leg]] = prps_base_frame_yz
+        out_drive[_drive_prps[2][leg]] = prps_base_frame_zz
+        out_drive[_drive_prps[3][leg]] = axis_x_prps_axes2_in_base_x
+        out_drive[_drive_prps[4][leg]] = axis_x_prps_axes2_in_base_y
+        out_drive[_drive_prps[5][leg]] = axis_x_prps_axes2_in_base_z
     return ok, (out_leg_force, out_drive,)
 
 
@@ -2976,7 +3038,7 @@ def _run_potential(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_potential = m.zeros(1)
+    out_potential = m.zeros("potential")
     # (V1) potential energy
     potential_t_5 = (
     gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + m_star*t_x) +
@@ -3084,10 +3146,10 @@ def _run_condition(m, X):
     reached = True
     clear = True
     valid = valid & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_H = m.zeros(36)
-    out_lengths = m.zeros(2)
-    out_pivots = m.zeros(3)
-    out_reach = m.zeros(3)
+    out_H = m.zeros("H")
+    out_lengths = m.zeros("lengths")
+    out_pivots = m.zeros("pivots")
+    out_reach = m.zeros("reach")
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
@@ -3157,19 +3219,19 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         spread_t_5,
         ))
-        out_H[[0, 2, 4][leg]] = prps_base_frame_xz
-        out_H[[6, 8, 10][leg]] = prps_base_frame_yz
-        out_H[[12, 14, 16][leg]] = prps_base_frame_zz
-        out_H[[18, 20, 22][leg]] = H_a_1_x
-        out_H[[24, 26, 28][leg]] = H_a_1_y
-        out_H[[30, 32, 34][leg]] = H_a_1_z
-        out_H[[1, 3, 5][leg]] = axis_x_prps_axes2_in_base_x
-        out_H[[7, 9, 11][leg]] = axis_x_prps_axes2_in_base_y
-        out_H[[13, 15, 17][leg]] = axis_x_prps_axes2_in_base_z
-        out_H[[19, 21, 23][leg]] = H_a_3_x
-        out_H[[25, 27, 29][leg]] = H_a_3_y
-        out_H[[31, 33, 35][leg]] = H_a_3_z
-        out_pivots[[0, 1, 2][leg]] = least_pivots
+        out_H[_H_prps[0][leg]] = prps_base_frame_xz
+        out_H[_H_prps[1][leg]] = prps_base_frame_yz
+        out_H[_H_prps[2][leg]] = prps_base_frame_zz
+        out_H[_H_prps[3][leg]] = H_a_1_x
+        out_H[_H_prps[4][leg]] = H_a_1_y
+        out_H[_H_prps[5][leg]] = H_a_1_z
+        out_H[_H_prps[6][leg]] = axis_x_prps_axes2_in_base_x
+        out_H[_H_prps[7][leg]] = axis_x_prps_axes2_in_base_y
+        out_H[_H_prps[8][leg]] = axis_x_prps_axes2_in_base_z
+        out_H[_H_prps[9][leg]] = H_a_3_x
+        out_H[_H_prps[10][leg]] = H_a_3_y
+        out_H[_H_prps[11][leg]] = H_a_3_z
+        out_pivots[_pivots_prps[0][leg]] = least_pivots
     total_prps, = sums
     # (C2) rms distance of the platform points from their centroid
     spread = spread_t*sqrt(total_prps)
@@ -3182,44 +3244,42 @@ _DEFAULT = Parameters()
 
 
 def _steps_M(m, X):
-    M_of_M, = m.run(_run_M, ((6, 6),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
     return (M_of_M,)
 
 
 def _steps_Z(m, X, V):
-    Z_of_Z, = m.run(_run_Z, ((6,),), X, V)
+    Z_of_Z, = m.run(_run_Z, ("Z",), X, V)
     return (Z_of_Z,)
 
 
 def _steps_H(m, X):
-    H_of_H, = m.run(_run_H, ((6, 6),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 
 def _steps_inverse_kinematics(m, X):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((9,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     return (q_of_inverse_kinematics,)
 
 
 def _steps_joint_rates(m, X, V):
-    qd_of_joint_rates, = m.run(_run_joint_rates, ((9,),), X, V)
+    qd_of_joint_rates, = m.run(_run_joint_rates, ("qd",), X, V)
     return (qd_of_joint_rates,)
 
 
 def _steps_joint_accelerations(m, X, V, A):
-    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ((9,),), X, V, A)
+    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
     return (qdd_of_joint_accelerations,)
 
 
 def _steps_dynamics(m, X, V):
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((6, 6), (6,), (6, 6)), X, V)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
 
 
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
-    required_of_required, H_of_required = m.run(_run_required, ((6,), (6, 6)), X, V, A)
+    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     solve_3 = _solve(H_of_required, subtract_2)
@@ -3227,9 +3287,7 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((6, 6), (6,), (6, 6)), X, V)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
     extend_2 = wrench
     add_3 = times_1 + extend_2
@@ -3244,25 +3302,25 @@ def _steps_complete_acceleration(m, X, V, A, wrench):
 
 
 def _steps_leg_reactions(m, X, V, A, wrench):
-    required_of_required, H_of_required = m.run(_run_required, ((6,), (6, 6)), X, V, A)
+    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     solve_3 = _solve(H_of_required, subtract_2)
-    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ((3, 3), (6, 3)), X, V, A)
+    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
     add_forces_4 = _with_forces(leg_force_of_legs, solve_3, drive_of_legs, [0, 0, 1, 1, 2, 2])
     return (add_forces_4,)
 
 
 def _steps_energy(m, X, V):
-    M_of_M, = m.run(_run_M, ((6, 6),), X)
-    potential_of_potential, = m.run(_run_potential, ((1,),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
+    potential_of_potential, = m.run(_run_potential, ("potential",), X)
     half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
     entry_2 = potential_of_potential[0]
     return (half_form_1, entry_2,)
 
 
 def _steps_null_space(m, X):
-    H_of_H, = m.run(_run_H, ((6, 6),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     null_basis_1 = _null_basis(H_of_H, 6)
     return (null_basis_1,)
 
@@ -3270,7 +3328,7 @@ def _steps_null_space(m, X):
 def _steps_condition(m, X, length):
     (
     H_of_condition, lengths_of_condition, pivots_of_condition, reach_of_condition,
-    ) = m.run(_run_condition, ((6, 6), (2,), (3,), (3,)), X)
+    ) = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
     choose_length_1 = _chosen_length(lengths_of_condition, length)
     divide_rows_2 = _rows_divided(H_of_condition, choose_length_1, [3, 4, 5])
     singular_values_3 = _singular_values(divide_rows_2)
@@ -3278,14 +3336,14 @@ def _steps_condition(m, X, length):
 
 
 def _steps_mismatch(m, X, q_actuated):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((9,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     take_1 = q_of_inverse_kinematics[[0, 2, 3, 5, 6, 8]]
     subtract_2 = q_actuated - take_1
     return (subtract_2,)
 
 
 def _steps_slope(m, X):
-    H_of_H, = m.run(_run_H, ((6, 6),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 

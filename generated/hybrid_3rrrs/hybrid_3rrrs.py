@@ -67,6 +67,70 @@ NJ = 9
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
 
+_SHAPES = {  # of the arrays that functions give
+    "M": (6, 6),
+    "Z": (6,),
+    "H": (6, 6),
+    "required": (6,),
+    "q": (9,),
+    "qd": (9,),
+    "qdd": (9,),
+    "leg_force": (3, 3),
+    "drive": (6, 3),
+    "potential": (1,),
+    "lengths": (2,),
+    "pivots": (3,),
+    "reach": (3,),
+}
+# Where the entries of a leg type's legs stand in these arrays, row by row.
+_H_rrrs = (
+    [0, 2, 4],
+    [6, 8, 10],
+    [12, 14, 16],
+    [18, 20, 22],
+    [24, 26, 28],
+    [30, 32, 34],
+    [1, 3, 5],
+    [7, 9, 11],
+    [13, 15, 17],
+    [19, 21, 23],
+    [25, 27, 29],
+    [31, 33, 35],
+)
+_q_rrrs = (
+    [0, 3, 6],
+    [1, 4, 7],
+    [2, 5, 8],
+)
+_qd_rrrs = (
+    [0, 3, 6],
+    [1, 4, 7],
+    [2, 5, 8],
+)
+_qdd_rrrs = (
+    [0, 3, 6],
+    [1, 4, 7],
+    [2, 5, 8],
+)
+_leg_force_rrrs = (
+    [0, 3, 6],
+    [1, 4, 7],
+    [2, 5, 8],
+)
+_drive_rrrs = (
+    [0, 6, 12],
+    [1, 7, 13],
+    [2, 8, 14],
+    [3, 9, 15],
+    [4, 10, 16],
+    [5, 11, 17],
+)
+_pivots_rrrs = (
+    [0, 1, 2],
+)
+_reach_rrrs = (
+    [0, 1, 2],
+)
 _DRIVEN_JOINTS = (0, 1, 3, 4, 6, 7)
 
 _DEFAULTS = {
@@ -414,6 +478,7 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _rrrs = 3
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     gravity_z = p.gravity[2]
@@ -629,20 +694,20 @@ def _prepare(p):
     inv_rho2_2_t_4 = 1.0/rho2_2_t
     # (rrrs-V7) reciprocal vector 1
     inv_size = 1.0/size
-    total_rrrs = np.sum(np.broadcast_to(rrrs_link3_mass, 3))
-    total_rrrs_x = np.sum(np.broadcast_to(h_star_t_4, 3))
-    total_rrrs_y = np.sum(np.broadcast_to(h_star_t_5, 3))
-    total_rrrs_z = np.sum(np.broadcast_to(h_star_t_6, 3))
-    total_rrrs_xx = np.sum(np.broadcast_to(J_star_t_15, 3))
-    total_rrrs_xy = np.sum(np.broadcast_to(J_star_t_16, 3))
-    total_rrrs_xz = np.sum(np.broadcast_to(J_star_t_17, 3))
-    total_rrrs_yy = np.sum(np.broadcast_to(J_star_t_18, 3))
-    total_rrrs_yz = np.sum(np.broadcast_to(J_star_t_19, 3))
-    total_rrrs_zz = np.sum(np.broadcast_to(J_star_t_20, 3))
-    total_rrrs_x_2 = np.sum(np.broadcast_to(rrrs_platform_point_x, 3))
-    total_rrrs_y_2 = np.sum(np.broadcast_to(rrrs_platform_point_y, 3))
-    total_rrrs_z_2 = np.sum(np.broadcast_to(rrrs_platform_point_z, 3))
-    total_rrrs_2 = np.sum(np.broadcast_to(size_t_3, 3))
+    total_rrrs = np.sum(np.broadcast_to(rrrs_link3_mass, _rrrs))
+    total_rrrs_x = np.sum(np.broadcast_to(h_star_t_4, _rrrs))
+    total_rrrs_y = np.sum(np.broadcast_to(h_star_t_5, _rrrs))
+    total_rrrs_z = np.sum(np.broadcast_to(h_star_t_6, _rrrs))
+    total_rrrs_xx = np.sum(np.broadcast_to(J_star_t_15, _rrrs))
+    total_rrrs_xy = np.sum(np.broadcast_to(J_star_t_16, _rrrs))
+    total_rrrs_xz = np.sum(np.broadcast_to(J_star_t_17, _rrrs))
+    total_rrrs_yy = np.sum(np.broadcast_to(J_star_t_18, _rrrs))
+    total_rrrs_yz = np.sum(np.broadcast_to(J_star_t_19, _rrrs))
+    total_rrrs_zz = np.sum(np.broadcast_to(J_star_t_20, _rrrs))
+    total_rrrs_x_2 = np.sum(np.broadcast_to(rrrs_platform_point_x, _rrrs))
+    total_rrrs_y_2 = np.sum(np.broadcast_to(rrrs_platform_point_y, _rrrs))
+    total_rrrs_z_2 = np.sum(np.broadcast_to(rrrs_platform_point_z, _rrrs))
+    total_rrrs_2 = np.sum(np.broadcast_to(size_t_3, _rrrs))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_rrrs
     # (L2) first moment about the platform origin
@@ -676,7 +741,7 @@ def _prepare(p):
                 J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x,
                 h_star_y, h_star_z, m_star,),
             (
-                (3,
+                (_rrrs,
         (J_1_xx, J_2_xx, J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz,
                     J_3_zz, Jc_2_zz, Kd_2_t, Kd_2_t_2, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz,
                     Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2, d_Gamma_2_t,
@@ -696,7 +761,7 @@ def _prepare(p):
         (J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
                 h_star_z, m_star,),
             (
-                (3,
+                (_rrrs,
         (J_1_xx, J_2_xx, J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz,
                     J_3_zz, Jc_2_zz, Kd_2_t, Kd_2_t_2, branch_1, branch_2, d_Gamma_2_t,
                     d_Gamma_2_y, d_c_yy, d_phi_3_t, h_3_x, h_3_y, h_3_z,
@@ -714,7 +779,7 @@ def _prepare(p):
         (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2,
                 Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
             (
-                (3,
+                (_rrrs,
         (J_1_xx, J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, Kd_2_t, Kd_2_t_2, Sigma_2_xx,
                     Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1,
                     branch_2, g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x,
@@ -731,7 +796,7 @@ def _prepare(p):
         "H": (
         (),
             (
-                (3,
+                (_rrrs,
         (Kd_2_t, Kd_2_t_2, branch_1, branch_2, inv_size_t, inv_size_t_2, rho2_2_t,
                     rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
                     rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
@@ -746,7 +811,7 @@ def _prepare(p):
         (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
                 gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
-                (3,
+                (_rrrs,
         (J_1_xx, J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, Kd_2_t, Kd_2_t_2, Sigma_2_xx,
                     Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1,
                     branch_2, g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x,
@@ -763,7 +828,7 @@ def _prepare(p):
         "inverse_kinematics": (
         (),
             (
-                (3,
+                (_rrrs,
         (Kd_2_t, Kd_2_t_2, branch_1, branch_2, inv_size_t, inv_size_t_2, rho2_2_t,
                     rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
                     rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
@@ -777,7 +842,7 @@ def _prepare(p):
         "joint_rates": (
         (),
             (
-                (3,
+                (_rrrs,
         (Kd_2_t, Kd_2_t_2, branch_1, branch_2, inv_rrrs_platform_joint_offset_x, inv_size_t,
                     inv_size_t_2, rho2_2_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
                     rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
@@ -792,7 +857,7 @@ def _prepare(p):
         "joint_accelerations": (
         (),
             (
-                (3,
+                (_rrrs,
         (Kd_2_t, Kd_2_t_2, branch_1, branch_2, inv_rrrs_platform_joint_offset_x, inv_size_t,
                     inv_size_t_2, rho2_2_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
                     rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
@@ -807,7 +872,7 @@ def _prepare(p):
         "legs": (
         (gravity_x, gravity_y, gravity_z,),
             (
-                (3,
+                (_rrrs,
         (J_1_xx, J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, Kd_2_t, Kd_2_t_2, Sigma_2_xx,
                     Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1,
                     branch_2, g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x,
@@ -825,7 +890,7 @@ def _prepare(p):
         "potential": (
         (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
-                (3,
+                (_rrrs,
         (Kd_2_t, Kd_2_t_2, b_r0_x, b_r0_y, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_1_x,
                     h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, inv_size_t,
                     inv_size_t_2, potential_t, potential_t_2, rho2_2_t, rrrs_base_frame_xx,
@@ -842,7 +907,7 @@ def _prepare(p):
         "condition": (
         (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
             (
-                (3,
+                (_rrrs,
         (Kd_2_t, Kd_2_t_2, branch_1, branch_2, inv_rho2_2_t_4, inv_size, inv_size_t, inv_size_t_2,
                     inv_size_t_3, rho2_2_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
                     rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
@@ -894,16 +959,16 @@ class _Floats:
         """Shared values, and (leg, its values) for every leg of each loop."""
         return _constants(self.p, name)[:2]
 
-    def zeros(self, size):
-        return [0.0] * size
+    def zeros(self, name):
+        return [0.0] * math.prod(_SHAPES[name])
 
     def added(self, sums, leg, terms):
         """Sums over the legs so far."""
         return [a + b for a, b in zip(sums, terms)]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(shape)), np.nan) for shape in shapes]
+        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
         for k in range(self.states):
             try:
@@ -913,7 +978,7 @@ class _Floats:
             if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
                 for a, array in zip(found, arrays):
                     a[k] = array
-        return [a.T.reshape(*shape, self.states) for a, shape in zip(found, shapes)]
+        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
 
 
 class _Arrays:
@@ -929,8 +994,8 @@ class _Arrays:
         shared, _, columns = _constants(self.p, name)
         return shared, columns
 
-    def zeros(self, size):
-        return np.zeros((size, self.states))
+    def zeros(self, name):
+        return np.zeros((math.prod(_SHAPES[name]), self.states))
 
     def every(self, good):
         """Whether it holds for all legs."""
@@ -941,7 +1006,7 @@ class _Arrays:
         shape = (legs.stop, self.states)
         return [np.add.reduce(np.broadcast_to(t, shape), axis=0) for t in terms]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
         ok, arrays = function(self, *vectors)
         for a in arrays:
@@ -949,7 +1014,7 @@ class _Arrays:
         if not np.all(ok):
             for a in arrays:
                 a[:, ~ok] = np.nan
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
 
 class _Judged(_Arrays):
@@ -959,12 +1024,12 @@ class _Judged(_Arrays):
         super().__init__(p, states)
         self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
         (valid, reached, clear), arrays = function(self, *vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
             self.failed[code] |= ~np.broadcast_to(good, self.states)
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -1367,9 +1432,9 @@ def _run_dynamics(m, X, V):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_M = m.zeros(36)
-    out_Z = m.zeros(6)
-    out_H = m.zeros(36)
+    out_M = m.zeros("M")
+    out_Z = m.zeros("Z")
+    out_H = m.zeros("H")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -1833,18 +1898,18 @@ def _run_dynamics(m, X, V):
             M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6, U_in_base_x, U_in_base_y, U_in_base_z,
             Z_a_t, Z_a_t_2, Z_a_t_3,
         ))
-        out_H[[0, 2, 4][leg]] = w_1_t_3
-        out_H[[6, 8, 10][leg]] = w_1_t_4
-        out_H[[12, 14, 16][leg]] = w_1_t_5
-        out_H[[18, 20, 22][leg]] = H_a_1_x
-        out_H[[24, 26, 28][leg]] = H_a_1_y
-        out_H[[30, 32, 34][leg]] = H_a_1_z
-        out_H[[1, 3, 5][leg]] = -w_2_t
-        out_H[[7, 9, 11][leg]] = -w_2_t_2
-        out_H[[13, 15, 17][leg]] = -w_2_t_3
-        out_H[[19, 21, 23][leg]] = H_a_2_x
-        out_H[[25, 27, 29][leg]] = H_a_2_y
-        out_H[[31, 33, 35][leg]] = H_a_2_z
+        out_H[_H_rrrs[0][leg]] = w_1_t_3
+        out_H[_H_rrrs[1][leg]] = w_1_t_4
+        out_H[_H_rrrs[2][leg]] = w_1_t_5
+        out_H[_H_rrrs[3][leg]] = H_a_1_x
+        out_H[_H_rrrs[4][leg]] = H_a_1_y
+        out_H[_H_rrrs[5][leg]] = H_a_1_z
+        out_H[_H_rrrs[6][leg]] = -w_2_t
+        out_H[_H_rrrs[7][leg]] = -w_2_t_2
+        out_H[_H_rrrs[8][leg]] = -w_2_t_3
+        out_H[_H_rrrs[9][leg]] = H_a_2_x
+        out_H[_H_rrrs[10][leg]] = H_a_2_y
+        out_H[_H_rrrs[11][leg]] = H_a_2_z
     (
     total_rrrs_xx, total_rrrs_xy, total_rrrs_xz, total_rrrs_yy, total_rrrs_yz, total_rrrs_zz,
         total_rrrs_xx_2, total_rrrs_xy_2, total_rrrs_xz_2, total_rrrs_yx, total_rrrs_yy_2,
@@ -1967,7 +2032,7 @@ def _run_M(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_M = m.zeros(36)
+    out_M = m.zeros("M")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -2322,7 +2387,7 @@ def _run_Z(m, X, V):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_Z = m.zeros(6)
+    out_Z = m.zeros("Z")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -2717,7 +2782,7 @@ def _run_H(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_H = m.zeros(36)
+    out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
         Kd_2_t, Kd_2_t_2, branch_1, branch_2, inv_size_t, inv_size_t_2, rho2_2_t,
@@ -2841,18 +2906,18 @@ def _run_H(m, X):
             _TOLERANCE * _TOLERANCE * rho2_2_t) & (disc_2 >= 0.0) & (abs(v_1_z) > _TOLERANCE *
             size) & (abs(-r_2_r0_y) > _TOLERANCE * size))
         )
-        out_H[[0, 2, 4][leg]] = w_1_t_3
-        out_H[[6, 8, 10][leg]] = w_1_t_4
-        out_H[[12, 14, 16][leg]] = w_1_t_5
-        out_H[[18, 20, 22][leg]] = H_a_1_x
-        out_H[[24, 26, 28][leg]] = H_a_1_y
-        out_H[[30, 32, 34][leg]] = H_a_1_z
-        out_H[[1, 3, 5][leg]] = -w_2_t
-        out_H[[7, 9, 11][leg]] = -w_2_t_2
-        out_H[[13, 15, 17][leg]] = -w_2_t_3
-        out_H[[19, 21, 23][leg]] = H_a_2_x
-        out_H[[25, 27, 29][leg]] = H_a_2_y
-        out_H[[31, 33, 35][leg]] = H_a_2_z
+        out_H[_H_rrrs[0][leg]] = w_1_t_3
+        out_H[_H_rrrs[1][leg]] = w_1_t_4
+        out_H[_H_rrrs[2][leg]] = w_1_t_5
+        out_H[_H_rrrs[3][leg]] = H_a_1_x
+        out_H[_H_rrrs[4][leg]] = H_a_1_y
+        out_H[_H_rrrs[5][leg]] = H_a_1_z
+        out_H[_H_rrrs[6][leg]] = -w_2_t
+        out_H[_H_rrrs[7][leg]] = -w_2_t_2
+        out_H[_H_rrrs[8][leg]] = -w_2_t_3
+        out_H[_H_rrrs[9][leg]] = H_a_2_x
+        out_H[_H_rrrs[10][leg]] = H_a_2_y
+        out_H[_H_rrrs[11][leg]] = H_a_2_z
     return ok, (out_H,)
 
 
@@ -2926,8 +2991,8 @@ def _run_required(m, X, V, A):
     alpha_z = A_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_required = m.zeros(6)
-    out_H = m.zeros(36)
+    out_required = m.zeros("required")
+    out_H = m.zeros("H")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -3321,18 +3386,18 @@ def _run_required(m, X, V, A):
         sums = m.added(sums, leg, (
         c_in_base_x, c_in_base_y, c_in_base_z, R_a_t, R_a_t_2, R_a_t_3,
         ))
-        out_H[[0, 2, 4][leg]] = w_1_t_3
-        out_H[[6, 8, 10][leg]] = w_1_t_4
-        out_H[[12, 14, 16][leg]] = w_1_t_5
-        out_H[[18, 20, 22][leg]] = H_a_1_x
-        out_H[[24, 26, 28][leg]] = H_a_1_y
-        out_H[[30, 32, 34][leg]] = H_a_1_z
-        out_H[[1, 3, 5][leg]] = -w_2_t
-        out_H[[7, 9, 11][leg]] = -w_2_t_2
-        out_H[[13, 15, 17][leg]] = -w_2_t_3
-        out_H[[19, 21, 23][leg]] = H_a_2_x
-        out_H[[25, 27, 29][leg]] = H_a_2_y
-        out_H[[31, 33, 35][leg]] = H_a_2_z
+        out_H[_H_rrrs[0][leg]] = w_1_t_3
+        out_H[_H_rrrs[1][leg]] = w_1_t_4
+        out_H[_H_rrrs[2][leg]] = w_1_t_5
+        out_H[_H_rrrs[3][leg]] = H_a_1_x
+        out_H[_H_rrrs[4][leg]] = H_a_1_y
+        out_H[_H_rrrs[5][leg]] = H_a_1_z
+        out_H[_H_rrrs[6][leg]] = -w_2_t
+        out_H[_H_rrrs[7][leg]] = -w_2_t_2
+        out_H[_H_rrrs[8][leg]] = -w_2_t_3
+        out_H[_H_rrrs[9][leg]] = H_a_2_x
+        out_H[_H_rrrs[10][leg]] = H_a_2_y
+        out_H[_H_rrrs[11][leg]] = H_a_2_z
     (
     total_rrrs_x, total_rrrs_y, total_rrrs_z, total_rrrs_x_2, total_rrrs_y_2, total_rrrs_z_2,
     ) = sums
@@ -3394,7 +3459,7 @@ def _run_inverse_kinematics(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_q = m.zeros(9)
+    out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
         Kd_2_t, Kd_2_t_2, branch_1, branch_2, inv_size_t, inv_size_t_2, rho2_2_t,
@@ -3461,9 +3526,9 @@ def _run_inverse_kinematics(m, X):
         ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) >
             _TOLERANCE * _TOLERANCE * rho2_2_t) & (disc_2 >= 0.0))
         )
-        out_q[[0, 3, 6][leg]] = q_1
-        out_q[[1, 4, 7][leg]] = q_2
-        out_q[[2, 5, 8][leg]] = q_3
+        out_q[_q_rrrs[0][leg]] = q_1
+        out_q[_q_rrrs[1][leg]] = q_2
+        out_q[_q_rrrs[2][leg]] = q_3
     return ok, (out_q,)
 
 
@@ -3520,7 +3585,7 @@ def _run_joint_rates(m, X, V):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_qd = m.zeros(9)
+    out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
         Kd_2_t, Kd_2_t_2, branch_1, branch_2, inv_rrrs_platform_joint_offset_x, inv_size_t,
@@ -3640,9 +3705,9 @@ def _run_joint_rates(m, X, V):
             _TOLERANCE * _TOLERANCE * rho2_2_t) & (disc_2 >= 0.0) & (abs(v_1_z) > _TOLERANCE *
             size) & (abs(-r_2_r0_y) > _TOLERANCE * size))
         )
-        out_qd[[0, 3, 6][leg]] = qd_1
-        out_qd[[1, 4, 7][leg]] = -qd_2
-        out_qd[[2, 5, 8][leg]] = qd_3
+        out_qd[_qd_rrrs[0][leg]] = qd_1
+        out_qd[_qd_rrrs[1][leg]] = -qd_2
+        out_qd[_qd_rrrs[2][leg]] = qd_3
     return ok, (out_qd,)
 
 
@@ -3712,7 +3777,7 @@ def _run_joint_accelerations(m, X, V, A):
     alpha_z = A_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_qdd = m.zeros(9)
+    out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
         Kd_2_t, Kd_2_t_2, branch_1, branch_2, inv_rrrs_platform_joint_offset_x, inv_size_t,
@@ -3912,9 +3977,9 @@ def _run_joint_accelerations(m, X, V, A):
             _TOLERANCE * _TOLERANCE * rho2_2_t) & (disc_2 >= 0.0) & (abs(v_1_z) > _TOLERANCE *
             size) & (abs(-r_2_r0_y) > _TOLERANCE * size))
         )
-        out_qdd[[0, 3, 6][leg]] = qdd_1
-        out_qdd[[1, 4, 7][leg]] = -qdd_2
-        out_qdd[[2, 5, 8][leg]] = qdd_3
+        out_qdd[_qdd_rrrs[0][leg]] = qdd_1
+        out_qdd[_qdd_rrrs[1][leg]] = -qdd_2
+        out_qdd[_qdd_rrrs[2][leg]] = qdd_3
     return ok, (out_qdd,)
 
 
@@ -3985,8 +4050,8 @@ def _run_legs(m, X, V, A):
     alpha_z = A_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_leg_force = m.zeros(9)
-    out_drive = m.zeros(18)
+    out_leg_force = m.zeros("leg_force")
+    out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
         J_1_xx, J_2_xy, J_2_xz, J_2_yz, J_3_xy, J_3_xz, J_3_yz, Kd_2_t, Kd_2_t_2, Sigma_2_xx,
@@ -4311,15 +4376,15 @@ def _run_legs(m, X, V, A):
             _TOLERANCE * _TOLERANCE * rho2_2_t) & (disc_2 >= 0.0) & (abs(v_1_z) > _TOLERANCE *
             size) & (abs(-r_2_r0_y) > _TOLERANCE * size))
         )
-        out_leg_force[[0, 3, 6][leg]] = c_true_in_base_x
-        out_leg_force[[1, 4, 7][leg]] = c_true_in_base_y
-        out_leg_force[[2, 5, 8][leg]] = c_true_in_base_z
-        out_drive[[0, 6, 12][leg]] = w_1_t_3
-        out_drive[[1, 7, 13][leg]] = w_1_t_4
-        out_drive[[2, 8, 14][leg]] = w_1_t_5
-        out_drive[[3, 9, 15][leg]] = -w_2_t
-        out_drive[[4, 10, 16][leg]] = -w_2_t_2
-        out_drive[[5, 11, 17][leg]] = -w_2_t_3
+        out_leg_force[_leg_force_rrrs[0][leg]] = c_true_in_base_x
+        out_leg_force[_leg_force_rrrs[1][leg]] = c_true_in_base_y
+        out_leg_force[_leg_force_rrrs[2][leg]] = c_true_in_base_z
+        out_drive[_drive_rrrs[0][leg]] = w_1_t_3
+        out_drive[_drive_rrrs[1][leg]] = w_1_t_4
+        out_drive[_drive_rrrs[2][leg]] = w_1_t_5
+        out_drive[_drive_rrrs[3][leg]] = -w_2_t
+        out_drive[_drive_rrrs[4][leg]] = -w_2_t_2
+        out_drive[_drive_rrrs[5][leg]] = -w_2_t_3
     return ok, (out_leg_force, out_drive,)
 
 
@@ -4364,7 +4429,7 @@ def _run_potential(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_potential = m.zeros(1)
+    out_potential = m.zeros("potential")
     # (V1) potential energy
     potential_t_3 = (
     gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + m_star*t_x) +
@@ -4511,10 +4576,10 @@ def _run_condition(m, X):
     reached = True
     clear = True
     valid = valid & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_H = m.zeros(36)
-    out_lengths = m.zeros(2)
-    out_pivots = m.zeros(3)
-    out_reach = m.zeros(3)
+    out_H = m.zeros("H")
+    out_lengths = m.zeros("lengths")
+    out_pivots = m.zeros("pivots")
+    out_reach = m.zeros("reach")
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
@@ -4662,20 +4727,20 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         spread_t_5,
         ))
-        out_H[[0, 2, 4][leg]] = w_1_t_3
-        out_H[[6, 8, 10][leg]] = w_1_t_4
-        out_H[[12, 14, 16][leg]] = w_1_t_5
-        out_H[[18, 20, 22][leg]] = H_a_1_x
-        out_H[[24, 26, 28][leg]] = H_a_1_y
-        out_H[[30, 32, 34][leg]] = H_a_1_z
-        out_H[[1, 3, 5][leg]] = -w_2_t
-        out_H[[7, 9, 11][leg]] = -w_2_t_2
-        out_H[[13, 15, 17][leg]] = -w_2_t_3
-        out_H[[19, 21, 23][leg]] = H_a_2_x
-        out_H[[25, 27, 29][leg]] = H_a_2_y
-        out_H[[31, 33, 35][leg]] = H_a_2_z
-        out_pivots[[0, 1, 2][leg]] = least_pivots
-        out_reach[[0, 1, 2][leg]] = disc_2
+        out_H[_H_rrrs[0][leg]] = w_1_t_3
+        out_H[_H_rrrs[1][leg]] = w_1_t_4
+        out_H[_H_rrrs[2][leg]] = w_1_t_5
+        out_H[_H_rrrs[3][leg]] = H_a_1_x
+        out_H[_H_rrrs[4][leg]] = H_a_1_y
+        out_H[_H_rrrs[5][leg]] = H_a_1_z
+        out_H[_H_rrrs[6][leg]] = -w_2_t
+        out_H[_H_rrrs[7][leg]] = -w_2_t_2
+        out_H[_H_rrrs[8][leg]] = -w_2_t_3
+        out_H[_H_rrrs[9][leg]] = H_a_2_x
+        out_H[_H_rrrs[10][leg]] = H_a_2_y
+        out_H[_H_rrrs[11][leg]] = H_a_2_z
+        out_pivots[_pivots_rrrs[0][leg]] = least_pivots
+        out_reach[_reach_rrrs[0][leg]] = disc_2
     total_rrrs, = sums
     # (C2) rms distance of the platform points from their centroid
     spread = spread_t*sqrt(total_rrrs)
@@ -4688,44 +4753,42 @@ _DEFAULT = Parameters()
 
 
 def _steps_M(m, X):
-    M_of_M, = m.run(_run_M, ((6, 6),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
     return (M_of_M,)
 
 
 def _steps_Z(m, X, V):
-    Z_of_Z, = m.run(_run_Z, ((6,),), X, V)
+    Z_of_Z, = m.run(_run_Z, ("Z",), X, V)
     return (Z_of_Z,)
 
 
 def _steps_H(m, X):
-    H_of_H, = m.run(_run_H, ((6, 6),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 
 def _steps_inverse_kinematics(m, X):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((9,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     return (q_of_inverse_kinematics,)
 
 
 def _steps_joint_rates(m, X, V):
-    qd_of_joint_rates, = m.run(_run_joint_rates, ((9,),), X, V)
+    qd_of_joint_rates, = m.run(_run_joint_rates, ("qd",), X, V)
     return (qd_of_joint_rates,)
 
 
 def _steps_joint_accelerations(m, X, V, A):
-    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ((9,),), X, V, A)
+    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
     return (qdd_of_joint_accelerations,)
 
 
 def _steps_dynamics(m, X, V):
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((6, 6), (6,), (6, 6)), X, V)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
 
 
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
-    required_of_required, H_of_required = m.run(_run_required, ((6,), (6, 6)), X, V, A)
+    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     solve_3 = _solve(H_of_required, subtract_2)
@@ -4733,9 +4796,7 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((6, 6), (6,), (6, 6)), X, V)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
     extend_2 = wrench
     add_3 = times_1 + extend_2
@@ -4750,25 +4811,25 @@ def _steps_complete_acceleration(m, X, V, A, wrench):
 
 
 def _steps_leg_reactions(m, X, V, A, wrench):
-    required_of_required, H_of_required = m.run(_run_required, ((6,), (6, 6)), X, V, A)
+    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     solve_3 = _solve(H_of_required, subtract_2)
-    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ((3, 3), (6, 3)), X, V, A)
+    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
     add_forces_4 = _with_forces(leg_force_of_legs, solve_3, drive_of_legs, [0, 0, 1, 1, 2, 2])
     return (add_forces_4,)
 
 
 def _steps_energy(m, X, V):
-    M_of_M, = m.run(_run_M, ((6, 6),), X)
-    potential_of_potential, = m.run(_run_potential, ((1,),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
+    potential_of_potential, = m.run(_run_potential, ("potential",), X)
     half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
     entry_2 = potential_of_potential[0]
     return (half_form_1, entry_2,)
 
 
 def _steps_null_space(m, X):
-    H_of_H, = m.run(_run_H, ((6, 6),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     null_basis_1 = _null_basis(H_of_H, 6)
     return (null_basis_1,)
 
@@ -4776,7 +4837,7 @@ def _steps_null_space(m, X):
 def _steps_condition(m, X, length):
     (
     H_of_condition, lengths_of_condition, pivots_of_condition, reach_of_condition,
-    ) = m.run(_run_condition, ((6, 6), (2,), (3,), (3,)), X)
+    ) = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
     choose_length_1 = _chosen_length(lengths_of_condition, length)
     divide_rows_2 = _rows_divided(H_of_condition, choose_length_1, [3, 4, 5])
     singular_values_3 = _singular_values(divide_rows_2)
@@ -4784,7 +4845,7 @@ def _steps_condition(m, X, length):
 
 
 def _steps_mismatch(m, X, q_actuated):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((9,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     take_1 = q_of_inverse_kinematics[[0, 1, 3, 4, 6, 7]]
     subtract_2 = q_actuated - take_1
     wrap_turns_3 = _wrapped(subtract_2, [0, 1, 2, 3, 4, 5])
@@ -4792,7 +4853,7 @@ def _steps_mismatch(m, X, q_actuated):
 
 
 def _steps_slope(m, X):
-    H_of_H, = m.run(_run_H, ((6, 6),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 

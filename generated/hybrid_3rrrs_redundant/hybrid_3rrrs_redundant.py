@@ -67,6 +67,144 @@ NJ = 10
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
 
+_SHAPES = {  # of the arrays that functions give
+    "M": (7, 7),
+    "Z": (7,),
+    "H": (7, 7),
+    "required": (7,),
+    "q": (10,),
+    "qd": (10,),
+    "qdd": (10,),
+    "leg_force": (3, 3),
+    "drive": (7, 3),
+    "potential": (1,),
+    "lengths": (2,),
+    "pivots": (3,),
+    "reach": (3,),
+}
+# Where the entries of a leg type's legs stand in these arrays, row by row.
+_Z_rrrrs = (
+    [6],
+)
+_M_rrrrs = (
+    [42],
+    [6],
+    [43],
+    [13],
+    [44],
+    [20],
+    [45],
+    [27],
+    [46],
+    [34],
+    [47],
+    [41],
+    [48],
+)
+_H_rrrrs = (
+    [0],
+    [7],
+    [14],
+    [21],
+    [28],
+    [35],
+    [43],
+    [2],
+    [9],
+    [16],
+    [23],
+    [30],
+    [37],
+    [44],
+)
+_H_rrrs = (
+    [3, 5],
+    [10, 12],
+    [17, 19],
+    [24, 26],
+    [31, 33],
+    [38, 40],
+    [4, 6],
+    [11, 13],
+    [18, 20],
+    [25, 27],
+    [32, 34],
+    [39, 41],
+)
+_required_rrrrs = (
+    [6],
+)
+_q_rrrrs = (
+    [0],
+    [1],
+    [2],
+    [3],
+)
+_q_rrrs = (
+    [4, 7],
+    [5, 8],
+    [6, 9],
+)
+_qd_rrrrs = (
+    [0],
+    [1],
+    [2],
+    [3],
+)
+_qd_rrrs = (
+    [4, 7],
+    [5, 8],
+    [6, 9],
+)
+_qdd_rrrrs = (
+    [0],
+    [1],
+    [2],
+    [3],
+)
+_qdd_rrrs = (
+    [4, 7],
+    [5, 8],
+    [6, 9],
+)
+_leg_force_rrrrs = (
+    [0],
+    [1],
+    [2],
+)
+_drive_rrrrs = (
+    [0],
+    [1],
+    [2],
+    [6],
+    [7],
+    [8],
+)
+_leg_force_rrrs = (
+    [3, 6],
+    [4, 7],
+    [5, 8],
+)
+_drive_rrrs = (
+    [9, 15],
+    [10, 16],
+    [11, 17],
+    [12, 18],
+    [13, 19],
+    [14, 20],
+)
+_pivots_rrrrs = (
+    [0],
+)
+_reach_rrrrs = (
+    [0],
+)
+_pivots_rrrs = (
+    [1, 2],
+)
+_reach_rrrs = (
+    [1, 2],
+)
 _DRIVEN_JOINTS = (0, 1, 2, 4, 5, 7, 8)
 
 _DEFAULTS = {
@@ -496,6 +634,8 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _rrrrs = 1
+    _rrrs = 2
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     gravity_z = p.gravity[2]
@@ -805,20 +945,20 @@ def _prepare(p):
     inv_rho2_3_rrrrs_t_4 = 1.0/rho2_3_rrrrs_t
     # (rrrrs-V9) reciprocal vector 1
     inv_size_rrrrs = 1.0/size_rrrrs
-    total_rrrrs = np.sum(np.broadcast_to(rrrrs_link4_mass, 1))
-    total_rrrrs_x = np.sum(np.broadcast_to(h_star_t_4, 1))
-    total_rrrrs_y = np.sum(np.broadcast_to(h_star_t_5, 1))
-    total_rrrrs_z = np.sum(np.broadcast_to(h_star_t_6, 1))
-    total_rrrrs_xx = np.sum(np.broadcast_to(J_star_t_15, 1))
-    total_rrrrs_xy = np.sum(np.broadcast_to(J_star_t_16, 1))
-    total_rrrrs_xz = np.sum(np.broadcast_to(J_star_t_17, 1))
-    total_rrrrs_yy = np.sum(np.broadcast_to(J_star_t_18, 1))
-    total_rrrrs_yz = np.sum(np.broadcast_to(J_star_t_19, 1))
-    total_rrrrs_zz = np.sum(np.broadcast_to(J_star_t_20, 1))
-    total_rrrrs_x_2 = np.sum(np.broadcast_to(rrrrs_platform_point_x, 1))
-    total_rrrrs_y_2 = np.sum(np.broadcast_to(rrrrs_platform_point_y, 1))
-    total_rrrrs_z_2 = np.sum(np.broadcast_to(rrrrs_platform_point_z, 1))
-    total_rrrrs_2 = np.sum(np.broadcast_to(size_rrrrs_t_3, 1))
+    total_rrrrs = np.sum(np.broadcast_to(rrrrs_link4_mass, _rrrrs))
+    total_rrrrs_x = np.sum(np.broadcast_to(h_star_t_4, _rrrrs))
+    total_rrrrs_y = np.sum(np.broadcast_to(h_star_t_5, _rrrrs))
+    total_rrrrs_z = np.sum(np.broadcast_to(h_star_t_6, _rrrrs))
+    total_rrrrs_xx = np.sum(np.broadcast_to(J_star_t_15, _rrrrs))
+    total_rrrrs_xy = np.sum(np.broadcast_to(J_star_t_16, _rrrrs))
+    total_rrrrs_xz = np.sum(np.broadcast_to(J_star_t_17, _rrrrs))
+    total_rrrrs_yy = np.sum(np.broadcast_to(J_star_t_18, _rrrrs))
+    total_rrrrs_yz = np.sum(np.broadcast_to(J_star_t_19, _rrrrs))
+    total_rrrrs_zz = np.sum(np.broadcast_to(J_star_t_20, _rrrrs))
+    total_rrrrs_x_2 = np.sum(np.broadcast_to(rrrrs_platform_point_x, _rrrrs))
+    total_rrrrs_y_2 = np.sum(np.broadcast_to(rrrrs_platform_point_y, _rrrrs))
+    total_rrrrs_z_2 = np.sum(np.broadcast_to(rrrrs_platform_point_z, _rrrrs))
+    total_rrrrs_2 = np.sum(np.broadcast_to(size_rrrrs_t_3, _rrrrs))
     # (rrrs-G2) length of the leg's lever arms, the measure of what is near singular
     size_rrrs_t = rrrs_joint3_offset_x*rrrs_joint3_offset_x
     size_rrrs_t_2 = rrrs_platform_joint_offset_x*rrrs_platform_joint_offset_x
@@ -964,20 +1104,20 @@ def _prepare(p):
     inv_rho2_2_rrrs_t_4 = 1.0/rho2_2_rrrs_t
     # (rrrs-V7) reciprocal vector 1
     inv_size_rrrs = 1.0/size_rrrs
-    total_rrrs = np.sum(np.broadcast_to(rrrs_link3_mass, 2))
-    total_rrrs_x = np.sum(np.broadcast_to(h_star_t_7, 2))
-    total_rrrs_y = np.sum(np.broadcast_to(h_star_t_8, 2))
-    total_rrrs_z = np.sum(np.broadcast_to(h_star_t_9, 2))
-    total_rrrs_xx = np.sum(np.broadcast_to(J_star_t_25, 2))
-    total_rrrs_xy = np.sum(np.broadcast_to(J_star_t_26, 2))
-    total_rrrs_xz = np.sum(np.broadcast_to(J_star_t_27, 2))
-    total_rrrs_yy = np.sum(np.broadcast_to(J_star_t_28, 2))
-    total_rrrs_yz = np.sum(np.broadcast_to(J_star_t_29, 2))
-    total_rrrs_zz = np.sum(np.broadcast_to(J_star_t_30, 2))
-    total_rrrs_x_2 = np.sum(np.broadcast_to(rrrs_platform_point_x, 2))
-    total_rrrs_y_2 = np.sum(np.broadcast_to(rrrs_platform_point_y, 2))
-    total_rrrs_z_2 = np.sum(np.broadcast_to(rrrs_platform_point_z, 2))
-    total_rrrs_2 = np.sum(np.broadcast_to(size_rrrs_t_3, 2))
+    total_rrrs = np.sum(np.broadcast_to(rrrs_link3_mass, _rrrs))
+    total_rrrs_x = np.sum(np.broadcast_to(h_star_t_7, _rrrs))
+    total_rrrs_y = np.sum(np.broadcast_to(h_star_t_8, _rrrs))
+    total_rrrs_z = np.sum(np.broadcast_to(h_star_t_9, _rrrs))
+    total_rrrs_xx = np.sum(np.broadcast_to(J_star_t_25, _rrrs))
+    total_rrrs_xy = np.sum(np.broadcast_to(J_star_t_26, _rrrs))
+    total_rrrs_xz = np.sum(np.broadcast_to(J_star_t_27, _rrrs))
+    total_rrrs_yy = np.sum(np.broadcast_to(J_star_t_28, _rrrs))
+    total_rrrs_yz = np.sum(np.broadcast_to(J_star_t_29, _rrrs))
+    total_rrrs_zz = np.sum(np.broadcast_to(J_star_t_30, _rrrs))
+    total_rrrs_x_2 = np.sum(np.broadcast_to(rrrs_platform_point_x, _rrrs))
+    total_rrrs_y_2 = np.sum(np.broadcast_to(rrrs_platform_point_y, _rrrs))
+    total_rrrs_z_2 = np.sum(np.broadcast_to(rrrs_platform_point_z, _rrrs))
+    total_rrrs_2 = np.sum(np.broadcast_to(size_rrrs_t_3, _rrrs))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_rrrrs + total_rrrs
     # (L2) first moment about the platform origin
@@ -1011,7 +1151,7 @@ def _prepare(p):
                 J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x,
                 h_star_y, h_star_z, m_star,),
             (
-                (1,
+                (_rrrrs,
         (J_1_rrrrs_xx, J_2_rrrrs_xx, J_2_rrrrs_xy, J_2_rrrrs_xz, J_2_rrrrs_yy, J_2_rrrrs_yz,
                     J_2_rrrrs_zz, J_3_rrrrs_xx, J_3_rrrrs_xy, J_3_rrrrs_xz, J_3_rrrrs_yy,
                     J_3_rrrrs_yz, J_4_rrrrs_xx, J_4_rrrrs_xy, J_4_rrrrs_xz, J_4_rrrrs_yy,
@@ -1032,7 +1172,7 @@ def _prepare(p):
                     rrrrs_link3_mass, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
                     rrrrs_platform_point_y, rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_3,),
                 ),
-                (2,
+                (_rrrs,
         (J_1_rrrs_xx, J_2_rrrs_xx, J_2_rrrs_xy, J_2_rrrs_xz, J_2_rrrs_yy, J_2_rrrs_yz,
                     J_3_rrrs_xx, J_3_rrrs_xy, J_3_rrrs_xz, J_3_rrrs_yy, J_3_rrrs_yz, J_3_rrrs_zz,
                     Jc_2_rrrs_zz, Kd_2_rrrs_t, Kd_2_rrrs_t_2, Sigma_2_rrrs_xx, Sigma_2_rrrs_yy,
@@ -1054,7 +1194,7 @@ def _prepare(p):
         (J_star_t_32, J_star_t_34, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
                 h_star_z, m_star,),
             (
-                (1,
+                (_rrrrs,
         (J_1_rrrrs_xx, J_2_rrrrs_xx, J_2_rrrrs_xy, J_2_rrrrs_xz, J_2_rrrrs_yy, J_2_rrrrs_yz,
                     J_2_rrrrs_zz, J_3_rrrrs_xx, J_3_rrrrs_xy, J_3_rrrrs_xz, J_3_rrrrs_yy,
                     J_3_rrrrs_yz, J_4_rrrrs_xx, J_4_rrrrs_xy, J_4_rrrrs_xz, J_4_rrrrs_yy,
@@ -1071,7 +1211,7 @@ def _prepare(p):
                     rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
                     rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_3,),
                 ),
-                (2,
+                (_rrrs,
         (J_1_rrrs_xx, J_2_rrrs_xx, J_2_rrrs_xy, J_2_rrrs_xz, J_2_rrrs_yy, J_2_rrrs_yz,
                     J_3_rrrs_xx, J_3_rrrs_xy, J_3_rrrs_xz, J_3_rrrs_yy, J_3_rrrs_yz, J_3_rrrs_zz,
                     Jc_2_rrrs_zz, Kd_2_rrrs_t, Kd_2_rrrs_t_2, branch_1_rrrs, branch_2_rrrs,
@@ -1091,7 +1231,7 @@ def _prepare(p):
         (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2,
                 Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
             (
-                (1,
+                (_rrrrs,
         (J_1_rrrrs_xx, J_2_rrrrs_xy, J_2_rrrrs_xz, J_2_rrrrs_yz, J_3_rrrrs_xy, J_3_rrrrs_xz,
                     J_3_rrrrs_yz, J_4_rrrrs_xy, J_4_rrrrs_xz, J_4_rrrrs_yz, Kd_3_rrrrs_t,
                     Kd_3_rrrrs_t_2, Sigma_2_rrrrs_xx, Sigma_2_rrrrs_yy, Sigma_2_rrrrs_zz,
@@ -1109,7 +1249,7 @@ def _prepare(p):
                     rrrrs_platform_point_x, rrrrs_platform_point_y, rrrrs_platform_point_z,
                     size_rrrrs, size_rrrrs_t_3,),
                 ),
-                (2,
+                (_rrrs,
         (J_1_rrrs_xx, J_2_rrrs_xy, J_2_rrrs_xz, J_2_rrrs_yz, J_3_rrrs_xy, J_3_rrrs_xz,
                     J_3_rrrs_yz, Kd_2_rrrs_t, Kd_2_rrrs_t_2, Sigma_2_rrrs_xx, Sigma_2_rrrs_yy,
                     Sigma_2_rrrs_zz, Sigma_3_rrrs_xx, Sigma_3_rrrs_yy, Sigma_3_rrrs_zz,
@@ -1129,7 +1269,7 @@ def _prepare(p):
         "H": (
         (),
             (
-                (1,
+                (_rrrrs,
         (Kd_3_rrrrs_t, Kd_3_rrrrs_t_2, branch_1_rrrrs, branch_3_rrrrs, inv_size_rrrrs_t_2,
                     inv_size_rrrrs_t_3, rho2_3_rrrrs_t, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
                     rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
@@ -1139,7 +1279,7 @@ def _prepare(p):
                     rrrrs_joint4_offset_x, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
                     rrrrs_platform_point_y, rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_3,),
                 ),
-                (2,
+                (_rrrs,
         (Kd_2_rrrs_t, Kd_2_rrrs_t_2, branch_1_rrrs, branch_2_rrrs, inv_size_rrrs_t,
                     inv_size_rrrs_t_2, rho2_2_rrrs_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
                     rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
@@ -1155,7 +1295,7 @@ def _prepare(p):
         (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
                 gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
-                (1,
+                (_rrrrs,
         (J_1_rrrrs_xx, J_2_rrrrs_xy, J_2_rrrrs_xz, J_2_rrrrs_yz, J_3_rrrrs_xy, J_3_rrrrs_xz,
                     J_3_rrrrs_yz, J_4_rrrrs_xy, J_4_rrrrs_xz, J_4_rrrrs_yz, Kd_3_rrrrs_t,
                     Kd_3_rrrrs_t_2, Sigma_2_rrrrs_xx, Sigma_2_rrrrs_yy, Sigma_2_rrrrs_zz,
@@ -1173,7 +1313,7 @@ def _prepare(p):
                     rrrrs_platform_point_x, rrrrs_platform_point_y, rrrrs_platform_point_z,
                     size_rrrrs, size_rrrrs_t_3,),
                 ),
-                (2,
+                (_rrrs,
         (J_1_rrrs_xx, J_2_rrrs_xy, J_2_rrrs_xz, J_2_rrrs_yz, J_3_rrrs_xy, J_3_rrrs_xz,
                     J_3_rrrs_yz, Kd_2_rrrs_t, Kd_2_rrrs_t_2, Sigma_2_rrrs_xx, Sigma_2_rrrs_yy,
                     Sigma_2_rrrs_zz, Sigma_3_rrrs_xx, Sigma_3_rrrs_yy, Sigma_3_rrrs_zz,
@@ -1193,7 +1333,7 @@ def _prepare(p):
         "inverse_kinematics": (
         (),
             (
-                (1,
+                (_rrrrs,
         (Kd_3_rrrrs_t, Kd_3_rrrrs_t_2, branch_1_rrrrs, branch_3_rrrrs, inv_size_rrrrs_t_2,
                     inv_size_rrrrs_t_3, rho2_3_rrrrs_t, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
                     rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
@@ -1203,7 +1343,7 @@ def _prepare(p):
                     rrrrs_joint4_offset_x, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
                     rrrrs_platform_point_y, rrrrs_platform_point_z, size_rrrrs_t_3,),
                 ),
-                (2,
+                (_rrrs,
         (Kd_2_rrrs_t, Kd_2_rrrs_t_2, branch_1_rrrs, branch_2_rrrs, inv_size_rrrs_t,
                     inv_size_rrrs_t_2, rho2_2_rrrs_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
                     rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
@@ -1218,7 +1358,7 @@ def _prepare(p):
         "joint_rates": (
         (),
             (
-                (1,
+                (_rrrrs,
         (Kd_3_rrrrs_t, Kd_3_rrrrs_t_2, branch_1_rrrrs, branch_3_rrrrs,
                     inv_rrrrs_platform_joint_offset_x, inv_size_rrrrs_t_2, inv_size_rrrrs_t_3,
                     rho2_3_rrrrs_t, rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
@@ -1229,7 +1369,7 @@ def _prepare(p):
                     rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
                     rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_3,),
                 ),
-                (2,
+                (_rrrs,
         (Kd_2_rrrs_t, Kd_2_rrrs_t_2, branch_1_rrrs, branch_2_rrrs,
                     inv_rrrs_platform_joint_offset_x, inv_size_rrrs_t, inv_size_rrrs_t_2,
                     rho2_2_rrrs_t, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
@@ -1244,7 +1384,7 @@ def _prepare(p):
         "joint_accelerations": (
         (),
             (
-                (1,
+                (_rrrrs,
         (Kd_3_rrrrs_t, Kd_3_rrrrs_t_2, branch_1_rrrrs, branch_3_rrrrs,
                     inv_rrrrs_platform_joint_offset_x, inv_size_rrrrs_t_2, inv_size_rrrrs_t_3,
                     rho2_3_rrrrs_t, rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
@@ -1255,7 +1395,7 @@ def _prepare(p):
                     rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
                     rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_3,),
                 ),
-                (2,
+                (_rrrs,
         (Kd_2_rrrs_t, Kd_2_rrrs_t_2, branch_1_rrrs, branch_2_rrrs,
                     inv_rrrs_platform_joint_offset_x, inv_size_rrrs_t, inv_size_rrrs_t_2,
                     rho2_2_rrrs_t, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
@@ -1270,7 +1410,7 @@ def _prepare(p):
         "legs": (
         (gravity_x, gravity_y, gravity_z,),
             (
-                (1,
+                (_rrrrs,
         (J_1_rrrrs_xx, J_2_rrrrs_xy, J_2_rrrrs_xz, J_2_rrrrs_yz, J_3_rrrrs_xy, J_3_rrrrs_xz,
                     J_3_rrrrs_yz, J_4_rrrrs_xy, J_4_rrrrs_xz, J_4_rrrrs_yz, Kd_3_rrrrs_t,
                     Kd_3_rrrrs_t_2, Sigma_2_rrrrs_xx, Sigma_2_rrrrs_yy, Sigma_2_rrrrs_zz,
@@ -1288,7 +1428,7 @@ def _prepare(p):
                     rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
                     rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_3,),
                 ),
-                (2,
+                (_rrrs,
         (J_1_rrrs_xx, J_2_rrrs_xy, J_2_rrrs_xz, J_2_rrrs_yz, J_3_rrrs_xy, J_3_rrrs_xz,
                     J_3_rrrs_yz, Kd_2_rrrs_t, Kd_2_rrrs_t_2, Sigma_2_rrrs_xx, Sigma_2_rrrs_yy,
                     Sigma_2_rrrs_zz, Sigma_3_rrrs_xx, Sigma_3_rrrs_yy, Sigma_3_rrrs_zz,
@@ -1308,7 +1448,7 @@ def _prepare(p):
         "potential": (
         (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
-                (1,
+                (_rrrrs,
         (Kd_3_rrrrs_t, Kd_3_rrrrs_t_2, b_rrrrs_r0_x, b_rrrrs_r0_y, b_rrrrs_r0_z, branch_1_rrrrs,
                     branch_3_rrrrs, g_r0_x, g_r0_y, g_r0_z, h_1_rrrrs_x, h_1_rrrrs_y, h_1_rrrrs_z,
                     h_2_rrrrs_x, h_2_rrrrs_y, h_2_rrrrs_z, h_3_rrrrs_x, h_3_rrrrs_y, h_3_rrrrs_z,
@@ -1323,7 +1463,7 @@ def _prepare(p):
                     rrrrs_platform_point_x, rrrrs_platform_point_y, rrrrs_platform_point_z,
                     size_rrrrs_t_3,),
                 ),
-                (2,
+                (_rrrs,
         (Kd_2_rrrs_t, Kd_2_rrrs_t_2, b_rrrs_r0_x, b_rrrs_r0_y, branch_1_rrrs, branch_2_rrrs,
                     g_r0_x_2, g_r0_y_2, g_r0_z_2, h_1_rrrs_x, h_1_rrrs_y, h_1_rrrs_z, h_2_rrrs_x,
                     h_2_rrrs_y, h_2_rrrs_z, h_3_rrrs_x, h_3_rrrs_y, h_3_rrrs_z, inv_size_rrrs_t,
@@ -1341,7 +1481,7 @@ def _prepare(p):
         "condition": (
         (b_c_x, b_c_y, b_c_z, legs_size,),
             (
-                (1,
+                (_rrrrs,
         (Kd_3_rrrrs_t, Kd_3_rrrrs_t_2, branch_1_rrrrs, branch_3_rrrrs, inv_rho2_3_rrrrs_t_4,
                     inv_size_rrrrs, inv_size_rrrrs_t_2, inv_size_rrrrs_t_3, inv_size_rrrrs_t_4,
                     rho2_3_rrrrs_t, rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
@@ -1352,7 +1492,7 @@ def _prepare(p):
                     rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
                     rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_3,),
                 ),
-                (2,
+                (_rrrs,
         (Kd_2_rrrs_t, Kd_2_rrrs_t_2, branch_1_rrrs, branch_2_rrrs, inv_rho2_2_rrrs_t_4,
                     inv_size_rrrs, inv_size_rrrs_t, inv_size_rrrs_t_2, inv_size_rrrs_t_3,
                     rho2_2_rrrs_t, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
@@ -1404,16 +1544,16 @@ class _Floats:
         """Shared values, and (leg, its values) for every leg of each loop."""
         return _constants(self.p, name)[:2]
 
-    def zeros(self, size):
-        return [0.0] * size
+    def zeros(self, name):
+        return [0.0] * math.prod(_SHAPES[name])
 
     def added(self, sums, leg, terms):
         """Sums over the legs so far."""
         return [a + b for a, b in zip(sums, terms)]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(shape)), np.nan) for shape in shapes]
+        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
         for k in range(self.states):
             try:
@@ -1423,7 +1563,7 @@ class _Floats:
             if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
                 for a, array in zip(found, arrays):
                     a[k] = array
-        return [a.T.reshape(*shape, self.states) for a, shape in zip(found, shapes)]
+        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
 
 
 class _Arrays:
@@ -1439,8 +1579,8 @@ class _Arrays:
         shared, _, columns = _constants(self.p, name)
         return shared, columns
 
-    def zeros(self, size):
-        return np.zeros((size, self.states))
+    def zeros(self, name):
+        return np.zeros((math.prod(_SHAPES[name]), self.states))
 
     def every(self, good):
         """Whether it holds for all legs."""
@@ -1451,7 +1591,7 @@ class _Arrays:
         shape = (legs.stop, self.states)
         return [np.add.reduce(np.broadcast_to(t, shape), axis=0) for t in terms]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
         ok, arrays = function(self, *vectors)
         for a in arrays:
@@ -1459,7 +1599,7 @@ class _Arrays:
         if not np.all(ok):
             for a in arrays:
                 a[:, ~ok] = np.nan
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
 
 class _Judged(_Arrays):
@@ -1469,12 +1609,12 @@ class _Judged(_Arrays):
         super().__init__(p, states)
         self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
         (valid, reached, clear), arrays = function(self, *vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
             self.failed[code] |= ~np.broadcast_to(good, self.states)
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -1884,9 +2024,9 @@ def _run_dynamics(m, X, V):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_M = m.zeros(49)
-    out_Z = m.zeros(7)
-    out_H = m.zeros(49)
+    out_M = m.zeros("M")
+    out_Z = m.zeros("Z")
+    out_H = m.zeros("H")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -2648,34 +2788,34 @@ def _run_dynamics(m, X, V):
             M_ta_t_12, M_aa_t, M_aa_t_2, M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6,
             U_rrrrs_in_base_x, U_rrrrs_in_base_y, U_rrrrs_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,
         ))
-        out_Z[[6][leg]] = P_2_rrrrs_o
-        out_M[[42][leg]] = d_P_2_rrrrs_in_base_x
-        out_M[[6][leg]] = d_P_2_rrrrs_in_base_x
-        out_M[[43][leg]] = d_P_2_rrrrs_in_base_y
-        out_M[[13][leg]] = d_P_2_rrrrs_in_base_y
-        out_M[[44][leg]] = d_P_2_rrrrs_in_base_z
-        out_M[[20][leg]] = d_P_2_rrrrs_in_base_z
-        out_M[[45][leg]] = M_ya_2_rrrrs_x
-        out_M[[27][leg]] = M_ya_2_rrrrs_x
-        out_M[[46][leg]] = M_ya_2_rrrrs_y
-        out_M[[34][leg]] = M_ya_2_rrrrs_y
-        out_M[[47][leg]] = M_ya_2_rrrrs_z
-        out_M[[41][leg]] = M_ya_2_rrrrs_z
-        out_M[[48][leg]] = d1_P_2_rrrrs
-        out_H[[0][leg]] = w_1_rrrrs_t_3
-        out_H[[7][leg]] = w_1_rrrrs_t_4
-        out_H[[14][leg]] = w_1_rrrrs_t_5
-        out_H[[21][leg]] = H_a_1_rrrrs_x
-        out_H[[28][leg]] = H_a_1_rrrrs_y
-        out_H[[35][leg]] = H_a_1_rrrrs_z
-        out_H[[43][leg]] = 1.0
-        out_H[[2][leg]] = -w_3_rrrrs_t
-        out_H[[9][leg]] = -w_3_rrrrs_t_2
-        out_H[[16][leg]] = -w_3_rrrrs_t_3
-        out_H[[23][leg]] = H_a_3_rrrrs_x
-        out_H[[30][leg]] = H_a_3_rrrrs_y
-        out_H[[37][leg]] = H_a_3_rrrrs_z
-        out_H[[44][leg]] = -d1_qdd_3_rrrrs
+        out_Z[_Z_rrrrs[0][leg]] = P_2_rrrrs_o
+        out_M[_M_rrrrs[0][leg]] = d_P_2_rrrrs_in_base_x
+        out_M[_M_rrrrs[1][leg]] = d_P_2_rrrrs_in_base_x
+        out_M[_M_rrrrs[2][leg]] = d_P_2_rrrrs_in_base_y
+        out_M[_M_rrrrs[3][leg]] = d_P_2_rrrrs_in_base_y
+        out_M[_M_rrrrs[4][leg]] = d_P_2_rrrrs_in_base_z
+        out_M[_M_rrrrs[5][leg]] = d_P_2_rrrrs_in_base_z
+        out_M[_M_rrrrs[6][leg]] = M_ya_2_rrrrs_x
+        out_M[_M_rrrrs[7][leg]] = M_ya_2_rrrrs_x
+        out_M[_M_rrrrs[8][leg]] = M_ya_2_rrrrs_y
+        out_M[_M_rrrrs[9][leg]] = M_ya_2_rrrrs_y
+        out_M[_M_rrrrs[10][leg]] = M_ya_2_rrrrs_z
+        out_M[_M_rrrrs[11][leg]] = M_ya_2_rrrrs_z
+        out_M[_M_rrrrs[12][leg]] = d1_P_2_rrrrs
+        out_H[_H_rrrrs[0][leg]] = w_1_rrrrs_t_3
+        out_H[_H_rrrrs[1][leg]] = w_1_rrrrs_t_4
+        out_H[_H_rrrrs[2][leg]] = w_1_rrrrs_t_5
+        out_H[_H_rrrrs[3][leg]] = H_a_1_rrrrs_x
+        out_H[_H_rrrrs[4][leg]] = H_a_1_rrrrs_y
+        out_H[_H_rrrrs[5][leg]] = H_a_1_rrrrs_z
+        out_H[_H_rrrrs[6][leg]] = 1.0
+        out_H[_H_rrrrs[7][leg]] = -w_3_rrrrs_t
+        out_H[_H_rrrrs[8][leg]] = -w_3_rrrrs_t_2
+        out_H[_H_rrrrs[9][leg]] = -w_3_rrrrs_t_3
+        out_H[_H_rrrrs[10][leg]] = H_a_3_rrrrs_x
+        out_H[_H_rrrrs[11][leg]] = H_a_3_rrrrs_y
+        out_H[_H_rrrrs[12][leg]] = H_a_3_rrrrs_z
+        out_H[_H_rrrrs[13][leg]] = -d1_qdd_3_rrrrs
     (
     total_rrrrs_xx, total_rrrrs_xy, total_rrrrs_xz, total_rrrrs_yy, total_rrrrs_yz,
         total_rrrrs_zz, total_rrrrs_xx_2, total_rrrrs_xy_2, total_rrrrs_xz_2, total_rrrrs_yx,
@@ -3165,18 +3305,18 @@ def _run_dynamics(m, X, V):
             M_aa_t_12, U_rrrs_in_base_x, U_rrrs_in_base_y, U_rrrs_in_base_z, Z_a_t_4, Z_a_t_5,
             Z_a_t_6,
         ))
-        out_H[[3, 5][leg]] = w_1_rrrs_t_3
-        out_H[[10, 12][leg]] = w_1_rrrs_t_4
-        out_H[[17, 19][leg]] = w_1_rrrs_t_5
-        out_H[[24, 26][leg]] = H_a_1_rrrs_x
-        out_H[[31, 33][leg]] = H_a_1_rrrs_y
-        out_H[[38, 40][leg]] = H_a_1_rrrs_z
-        out_H[[4, 6][leg]] = -w_2_rrrs_t
-        out_H[[11, 13][leg]] = -w_2_rrrs_t_2
-        out_H[[18, 20][leg]] = -w_2_rrrs_t_3
-        out_H[[25, 27][leg]] = H_a_2_rrrs_x
-        out_H[[32, 34][leg]] = H_a_2_rrrs_y
-        out_H[[39, 41][leg]] = H_a_2_rrrs_z
+        out_H[_H_rrrs[0][leg]] = w_1_rrrs_t_3
+        out_H[_H_rrrs[1][leg]] = w_1_rrrs_t_4
+        out_H[_H_rrrs[2][leg]] = w_1_rrrs_t_5
+        out_H[_H_rrrs[3][leg]] = H_a_1_rrrs_x
+        out_H[_H_rrrs[4][leg]] = H_a_1_rrrs_y
+        out_H[_H_rrrs[5][leg]] = H_a_1_rrrs_z
+        out_H[_H_rrrs[6][leg]] = -w_2_rrrs_t
+        out_H[_H_rrrs[7][leg]] = -w_2_rrrs_t_2
+        out_H[_H_rrrs[8][leg]] = -w_2_rrrs_t_3
+        out_H[_H_rrrs[9][leg]] = H_a_2_rrrs_x
+        out_H[_H_rrrs[10][leg]] = H_a_2_rrrs_y
+        out_H[_H_rrrs[11][leg]] = H_a_2_rrrs_z
     (
     total_rrrs_xx, total_rrrs_xy, total_rrrs_xz, total_rrrs_yy, total_rrrs_yz, total_rrrs_zz,
         total_rrrs_xx_2, total_rrrs_xy_2, total_rrrs_xz_2, total_rrrs_yx, total_rrrs_yy_2,
@@ -3307,7 +3447,7 @@ def _run_M(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_M = m.zeros(49)
+    out_M = m.zeros("M")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -3710,19 +3850,19 @@ def _run_M(m, X):
             M_ta_t_3, M_ta_t_4, M_ta_t_5, M_ta_t_6, M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11,
             M_ta_t_12, M_aa_t, M_aa_t_2, M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6,
         ))
-        out_M[[42][leg]] = d_P_2_rrrrs_in_base_x
-        out_M[[6][leg]] = d_P_2_rrrrs_in_base_x
-        out_M[[43][leg]] = d_P_2_rrrrs_in_base_y
-        out_M[[13][leg]] = d_P_2_rrrrs_in_base_y
-        out_M[[44][leg]] = d_P_2_rrrrs_in_base_z
-        out_M[[20][leg]] = d_P_2_rrrrs_in_base_z
-        out_M[[45][leg]] = M_ya_2_rrrrs_x
-        out_M[[27][leg]] = M_ya_2_rrrrs_x
-        out_M[[46][leg]] = M_ya_2_rrrrs_y
-        out_M[[34][leg]] = M_ya_2_rrrrs_y
-        out_M[[47][leg]] = M_ya_2_rrrrs_z
-        out_M[[41][leg]] = M_ya_2_rrrrs_z
-        out_M[[48][leg]] = d1_P_2_rrrrs
+        out_M[_M_rrrrs[0][leg]] = d_P_2_rrrrs_in_base_x
+        out_M[_M_rrrrs[1][leg]] = d_P_2_rrrrs_in_base_x
+        out_M[_M_rrrrs[2][leg]] = d_P_2_rrrrs_in_base_y
+        out_M[_M_rrrrs[3][leg]] = d_P_2_rrrrs_in_base_y
+        out_M[_M_rrrrs[4][leg]] = d_P_2_rrrrs_in_base_z
+        out_M[_M_rrrrs[5][leg]] = d_P_2_rrrrs_in_base_z
+        out_M[_M_rrrrs[6][leg]] = M_ya_2_rrrrs_x
+        out_M[_M_rrrrs[7][leg]] = M_ya_2_rrrrs_x
+        out_M[_M_rrrrs[8][leg]] = M_ya_2_rrrrs_y
+        out_M[_M_rrrrs[9][leg]] = M_ya_2_rrrrs_y
+        out_M[_M_rrrrs[10][leg]] = M_ya_2_rrrrs_z
+        out_M[_M_rrrrs[11][leg]] = M_ya_2_rrrrs_z
+        out_M[_M_rrrrs[12][leg]] = d1_P_2_rrrrs
     (
     total_rrrrs_xx, total_rrrrs_xy, total_rrrrs_xz, total_rrrrs_yy, total_rrrrs_yz,
         total_rrrrs_zz, total_rrrrs_xx_2, total_rrrrs_xy_2, total_rrrrs_xz_2, total_rrrrs_yx,
@@ -4110,7 +4250,7 @@ def _run_Z(m, X, V):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_Z = m.zeros(7)
+    out_Z = m.zeros("Z")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -4629,7 +4769,7 @@ def _run_Z(m, X, V):
         sums = m.added(sums, leg, (
         U_rrrrs_in_base_x, U_rrrrs_in_base_y, U_rrrrs_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,
         ))
-        out_Z[[6][leg]] = P_2_rrrrs_o
+        out_Z[_Z_rrrrs[0][leg]] = P_2_rrrrs_o
     (
     total_rrrrs_x, total_rrrrs_y, total_rrrrs_z, total_rrrrs_x_2, total_rrrrs_y_2,
         total_rrrrs_z_2,
@@ -5042,7 +5182,7 @@ def _run_H(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_H = m.zeros(49)
+    out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
         Kd_3_rrrrs_t, Kd_3_rrrrs_t_2, branch_1_rrrrs, branch_3_rrrrs, inv_size_rrrrs_t_2,
@@ -5219,20 +5359,20 @@ def _run_H(m, X):
             & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE *
             size_rrrrs))
         )
-        out_H[[0][leg]] = w_1_rrrrs_t_3
-        out_H[[7][leg]] = w_1_rrrrs_t_4
-        out_H[[14][leg]] = w_1_rrrrs_t_5
-        out_H[[21][leg]] = H_a_1_rrrrs_x
-        out_H[[28][leg]] = H_a_1_rrrrs_y
-        out_H[[35][leg]] = H_a_1_rrrrs_z
-        out_H[[43][leg]] = 1.0
-        out_H[[2][leg]] = -w_3_rrrrs_t
-        out_H[[9][leg]] = -w_3_rrrrs_t_2
-        out_H[[16][leg]] = -w_3_rrrrs_t_3
-        out_H[[23][leg]] = H_a_3_rrrrs_x
-        out_H[[30][leg]] = H_a_3_rrrrs_y
-        out_H[[37][leg]] = H_a_3_rrrrs_z
-        out_H[[44][leg]] = -d1_qdd_3_rrrrs
+        out_H[_H_rrrrs[0][leg]] = w_1_rrrrs_t_3
+        out_H[_H_rrrrs[1][leg]] = w_1_rrrrs_t_4
+        out_H[_H_rrrrs[2][leg]] = w_1_rrrrs_t_5
+        out_H[_H_rrrrs[3][leg]] = H_a_1_rrrrs_x
+        out_H[_H_rrrrs[4][leg]] = H_a_1_rrrrs_y
+        out_H[_H_rrrrs[5][leg]] = H_a_1_rrrrs_z
+        out_H[_H_rrrrs[6][leg]] = 1.0
+        out_H[_H_rrrrs[7][leg]] = -w_3_rrrrs_t
+        out_H[_H_rrrrs[8][leg]] = -w_3_rrrrs_t_2
+        out_H[_H_rrrrs[9][leg]] = -w_3_rrrrs_t_3
+        out_H[_H_rrrrs[10][leg]] = H_a_3_rrrrs_x
+        out_H[_H_rrrrs[11][leg]] = H_a_3_rrrrs_y
+        out_H[_H_rrrrs[12][leg]] = H_a_3_rrrrs_z
+        out_H[_H_rrrrs[13][leg]] = -d1_qdd_3_rrrrs
     for leg, k in legs[1]:
         (
         Kd_2_rrrs_t, Kd_2_rrrs_t_2, branch_1_rrrs, branch_2_rrrs, inv_size_rrrs_t,
@@ -5372,18 +5512,18 @@ def _run_H(m, X):
             (abs(v_1_rrrs_z) > _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE *
             size_rrrs))
         )
-        out_H[[3, 5][leg]] = w_1_rrrs_t_3
-        out_H[[10, 12][leg]] = w_1_rrrs_t_4
-        out_H[[17, 19][leg]] = w_1_rrrs_t_5
-        out_H[[24, 26][leg]] = H_a_1_rrrs_x
-        out_H[[31, 33][leg]] = H_a_1_rrrs_y
-        out_H[[38, 40][leg]] = H_a_1_rrrs_z
-        out_H[[4, 6][leg]] = -w_2_rrrs_t
-        out_H[[11, 13][leg]] = -w_2_rrrs_t_2
-        out_H[[18, 20][leg]] = -w_2_rrrs_t_3
-        out_H[[25, 27][leg]] = H_a_2_rrrs_x
-        out_H[[32, 34][leg]] = H_a_2_rrrs_y
-        out_H[[39, 41][leg]] = H_a_2_rrrs_z
+        out_H[_H_rrrs[0][leg]] = w_1_rrrs_t_3
+        out_H[_H_rrrs[1][leg]] = w_1_rrrs_t_4
+        out_H[_H_rrrs[2][leg]] = w_1_rrrs_t_5
+        out_H[_H_rrrs[3][leg]] = H_a_1_rrrs_x
+        out_H[_H_rrrs[4][leg]] = H_a_1_rrrs_y
+        out_H[_H_rrrs[5][leg]] = H_a_1_rrrs_z
+        out_H[_H_rrrs[6][leg]] = -w_2_rrrs_t
+        out_H[_H_rrrs[7][leg]] = -w_2_rrrs_t_2
+        out_H[_H_rrrs[8][leg]] = -w_2_rrrs_t_3
+        out_H[_H_rrrs[9][leg]] = H_a_2_rrrs_x
+        out_H[_H_rrrs[10][leg]] = H_a_2_rrrs_y
+        out_H[_H_rrrs[11][leg]] = H_a_2_rrrs_z
     return ok, (out_H,)
 
 
@@ -5459,8 +5599,8 @@ def _run_required(m, X, V, A):
     alpha_z = A_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_required = m.zeros(7)
-    out_H = m.zeros(49)
+    out_required = m.zeros("required")
+    out_H = m.zeros("H")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -6038,21 +6178,21 @@ def _run_required(m, X, V, A):
         sums = m.added(sums, leg, (
         c_rrrrs_in_base_x, c_rrrrs_in_base_y, c_rrrrs_in_base_z, R_a_t, R_a_t_2, R_a_t_3,
         ))
-        out_required[[6][leg]] = P_2_rrrrs
-        out_H[[0][leg]] = w_1_rrrrs_t_3
-        out_H[[7][leg]] = w_1_rrrrs_t_4
-        out_H[[14][leg]] = w_1_rrrrs_t_5
-        out_H[[21][leg]] = H_a_1_rrrrs_x
-        out_H[[28][leg]] = H_a_1_rrrrs_y
-        out_H[[35][leg]] = H_a_1_rrrrs_z
-        out_H[[43][leg]] = 1.0
-        out_H[[2][leg]] = -w_3_rrrrs_t
-        out_H[[9][leg]] = -w_3_rrrrs_t_2
-        out_H[[16][leg]] = -w_3_rrrrs_t_3
-        out_H[[23][leg]] = H_a_3_rrrrs_x
-        out_H[[30][leg]] = H_a_3_rrrrs_y
-        out_H[[37][leg]] = H_a_3_rrrrs_z
-        out_H[[44][leg]] = -d1_qdd_3_rrrrs
+        out_required[_required_rrrrs[0][leg]] = P_2_rrrrs
+        out_H[_H_rrrrs[0][leg]] = w_1_rrrrs_t_3
+        out_H[_H_rrrrs[1][leg]] = w_1_rrrrs_t_4
+        out_H[_H_rrrrs[2][leg]] = w_1_rrrrs_t_5
+        out_H[_H_rrrrs[3][leg]] = H_a_1_rrrrs_x
+        out_H[_H_rrrrs[4][leg]] = H_a_1_rrrrs_y
+        out_H[_H_rrrrs[5][leg]] = H_a_1_rrrrs_z
+        out_H[_H_rrrrs[6][leg]] = 1.0
+        out_H[_H_rrrrs[7][leg]] = -w_3_rrrrs_t
+        out_H[_H_rrrrs[8][leg]] = -w_3_rrrrs_t_2
+        out_H[_H_rrrrs[9][leg]] = -w_3_rrrrs_t_3
+        out_H[_H_rrrrs[10][leg]] = H_a_3_rrrrs_x
+        out_H[_H_rrrrs[11][leg]] = H_a_3_rrrrs_y
+        out_H[_H_rrrrs[12][leg]] = H_a_3_rrrrs_z
+        out_H[_H_rrrrs[13][leg]] = -d1_qdd_3_rrrrs
     (
     total_rrrrs_x, total_rrrrs_y, total_rrrrs_z, total_rrrrs_x_2, total_rrrrs_y_2,
         total_rrrrs_z_2,
@@ -6430,18 +6570,18 @@ def _run_required(m, X, V, A):
         sums = m.added(sums, leg, (
         c_rrrs_in_base_x, c_rrrs_in_base_y, c_rrrs_in_base_z, R_a_t_4, R_a_t_5, R_a_t_6,
         ))
-        out_H[[3, 5][leg]] = w_1_rrrs_t_3
-        out_H[[10, 12][leg]] = w_1_rrrs_t_4
-        out_H[[17, 19][leg]] = w_1_rrrs_t_5
-        out_H[[24, 26][leg]] = H_a_1_rrrs_x
-        out_H[[31, 33][leg]] = H_a_1_rrrs_y
-        out_H[[38, 40][leg]] = H_a_1_rrrs_z
-        out_H[[4, 6][leg]] = -w_2_rrrs_t
-        out_H[[11, 13][leg]] = -w_2_rrrs_t_2
-        out_H[[18, 20][leg]] = -w_2_rrrs_t_3
-        out_H[[25, 27][leg]] = H_a_2_rrrs_x
-        out_H[[32, 34][leg]] = H_a_2_rrrs_y
-        out_H[[39, 41][leg]] = H_a_2_rrrs_z
+        out_H[_H_rrrs[0][leg]] = w_1_rrrs_t_3
+        out_H[_H_rrrs[1][leg]] = w_1_rrrs_t_4
+        out_H[_H_rrrs[2][leg]] = w_1_rrrs_t_5
+        out_H[_H_rrrs[3][leg]] = H_a_1_rrrs_x
+        out_H[_H_rrrs[4][leg]] = H_a_1_rrrs_y
+        out_H[_H_rrrs[5][leg]] = H_a_1_rrrs_z
+        out_H[_H_rrrs[6][leg]] = -w_2_rrrs_t
+        out_H[_H_rrrs[7][leg]] = -w_2_rrrs_t_2
+        out_H[_H_rrrs[8][leg]] = -w_2_rrrs_t_3
+        out_H[_H_rrrs[9][leg]] = H_a_2_rrrs_x
+        out_H[_H_rrrs[10][leg]] = H_a_2_rrrs_y
+        out_H[_H_rrrs[11][leg]] = H_a_2_rrrs_z
     (
     total_rrrs_x, total_rrrs_y, total_rrrs_z, total_rrrs_x_2, total_rrrs_y_2, total_rrrs_z_2,
     ) = sums
@@ -6505,7 +6645,7 @@ def _run_inverse_kinematics(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_q = m.zeros(10)
+    out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
         Kd_3_rrrrs_t, Kd_3_rrrrs_t_2, branch_1_rrrrs, branch_3_rrrrs, inv_size_rrrrs_t_2,
@@ -6597,10 +6737,10 @@ def _run_inverse_kinematics(m, X):
             (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >=
             0.0))
         )
-        out_q[[0][leg]] = q_1_rrrrs
-        out_q[[1][leg]] = y_2_extra_rrrrs
-        out_q[[2][leg]] = q_3_rrrrs
-        out_q[[3][leg]] = q_4_rrrrs
+        out_q[_q_rrrrs[0][leg]] = q_1_rrrrs
+        out_q[_q_rrrrs[1][leg]] = y_2_extra_rrrrs
+        out_q[_q_rrrrs[2][leg]] = q_3_rrrrs
+        out_q[_q_rrrrs[3][leg]] = q_4_rrrrs
     for leg, k in legs[1]:
         (
         Kd_2_rrrs_t, Kd_2_rrrs_t_2, branch_1_rrrs, branch_2_rrrs, inv_size_rrrs_t,
@@ -6679,9 +6819,9 @@ def _run_inverse_kinematics(m, X):
         ok & m.every((abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) &
             (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0))
         )
-        out_q[[4, 7][leg]] = q_1_rrrs
-        out_q[[5, 8][leg]] = q_2_rrrs
-        out_q[[6, 9][leg]] = q_3_rrrs
+        out_q[_q_rrrs[0][leg]] = q_1_rrrs
+        out_q[_q_rrrs[1][leg]] = q_2_rrrs
+        out_q[_q_rrrs[2][leg]] = q_3_rrrs
     return ok, (out_q,)
 
 
@@ -6740,7 +6880,7 @@ def _run_joint_rates(m, X, V):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_qd = m.zeros(10)
+    out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
         Kd_3_rrrrs_t, Kd_3_rrrrs_t_2, branch_1_rrrrs, branch_3_rrrrs,
@@ -6937,10 +7077,10 @@ def _run_joint_rates(m, X, V):
             & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE *
             size_rrrrs))
         )
-        out_qd[[0][leg]] = qd_1_rrrrs
-        out_qd[[1][leg]] = yd_2_rrrrs
-        out_qd[[2][leg]] = -qd_3_rrrrs
-        out_qd[[3][leg]] = qd_4_rrrrs
+        out_qd[_qd_rrrrs[0][leg]] = qd_1_rrrrs
+        out_qd[_qd_rrrrs[1][leg]] = yd_2_rrrrs
+        out_qd[_qd_rrrrs[2][leg]] = -qd_3_rrrrs
+        out_qd[_qd_rrrrs[3][leg]] = qd_4_rrrrs
     for leg, k in legs[1]:
         (
         Kd_2_rrrs_t, Kd_2_rrrs_t_2, branch_1_rrrs, branch_2_rrrs,
@@ -7076,9 +7216,9 @@ def _run_joint_rates(m, X, V):
             (abs(v_1_rrrs_z) > _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE *
             size_rrrs))
         )
-        out_qd[[4, 7][leg]] = qd_1_rrrs
-        out_qd[[5, 8][leg]] = -qd_2_rrrs
-        out_qd[[6, 9][leg]] = qd_3_rrrs
+        out_qd[_qd_rrrs[0][leg]] = qd_1_rrrs
+        out_qd[_qd_rrrs[1][leg]] = -qd_2_rrrs
+        out_qd[_qd_rrrs[2][leg]] = qd_3_rrrs
     return ok, (out_qd,)
 
 
@@ -7150,7 +7290,7 @@ def _run_joint_accelerations(m, X, V, A):
     alpha_z = A_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_qdd = m.zeros(10)
+    out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
         Kd_3_rrrrs_t, Kd_3_rrrrs_t_2, branch_1_rrrrs, branch_3_rrrrs,
@@ -7447,10 +7587,10 @@ def _run_joint_accelerations(m, X, V, A):
             & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE *
             size_rrrrs))
         )
-        out_qdd[[0][leg]] = qdd_1_rrrrs
-        out_qdd[[1][leg]] = ydd_2_rrrrs
-        out_qdd[[2][leg]] = -qdd_3_rrrrs
-        out_qdd[[3][leg]] = qdd_4_rrrrs
+        out_qdd[_qdd_rrrrs[0][leg]] = qdd_1_rrrrs
+        out_qdd[_qdd_rrrrs[1][leg]] = ydd_2_rrrrs
+        out_qdd[_qdd_rrrrs[2][leg]] = -qdd_3_rrrrs
+        out_qdd[_qdd_rrrrs[3][leg]] = qdd_4_rrrrs
     for leg, k in legs[1]:
         (
         Kd_2_rrrs_t, Kd_2_rrrs_t_2, branch_1_rrrs, branch_2_rrrs,
@@ -7670,9 +7810,9 @@ def _run_joint_accelerations(m, X, V, A):
             (abs(v_1_rrrs_z) > _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE *
             size_rrrs))
         )
-        out_qdd[[4, 7][leg]] = qdd_1_rrrs
-        out_qdd[[5, 8][leg]] = -qdd_2_rrrs
-        out_qdd[[6, 9][leg]] = qdd_3_rrrs
+        out_qdd[_qdd_rrrs[0][leg]] = qdd_1_rrrs
+        out_qdd[_qdd_rrrs[1][leg]] = -qdd_2_rrrs
+        out_qdd[_qdd_rrrs[2][leg]] = qdd_3_rrrs
     return ok, (out_qdd,)
 
 
@@ -7745,8 +7885,8 @@ def _run_legs(m, X, V, A):
     alpha_z = A_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_leg_force = m.zeros(9)
-    out_drive = m.zeros(21)
+    out_leg_force = m.zeros("leg_force")
+    out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
         J_1_rrrrs_xx, J_2_rrrrs_xy, J_2_rrrrs_xz, J_2_rrrrs_yz, J_3_rrrrs_xy, J_3_rrrrs_xz,
@@ -8230,15 +8370,15 @@ def _run_legs(m, X, V, A):
             & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE *
             size_rrrrs))
         )
-        out_leg_force[[0][leg]] = c_true_rrrrs_in_base_x
-        out_leg_force[[1][leg]] = c_true_rrrrs_in_base_y
-        out_leg_force[[2][leg]] = c_true_rrrrs_in_base_z
-        out_drive[[0][leg]] = w_1_rrrrs_t_3
-        out_drive[[1][leg]] = w_1_rrrrs_t_4
-        out_drive[[2][leg]] = w_1_rrrrs_t_5
-        out_drive[[6][leg]] = -w_3_rrrrs_t
-        out_drive[[7][leg]] = -w_3_rrrrs_t_2
-        out_drive[[8][leg]] = -w_3_rrrrs_t_3
+        out_leg_force[_leg_force_rrrrs[0][leg]] = c_true_rrrrs_in_base_x
+        out_leg_force[_leg_force_rrrrs[1][leg]] = c_true_rrrrs_in_base_y
+        out_leg_force[_leg_force_rrrrs[2][leg]] = c_true_rrrrs_in_base_z
+        out_drive[_drive_rrrrs[0][leg]] = w_1_rrrrs_t_3
+        out_drive[_drive_rrrrs[1][leg]] = w_1_rrrrs_t_4
+        out_drive[_drive_rrrrs[2][leg]] = w_1_rrrrs_t_5
+        out_drive[_drive_rrrrs[3][leg]] = -w_3_rrrrs_t
+        out_drive[_drive_rrrrs[4][leg]] = -w_3_rrrrs_t_2
+        out_drive[_drive_rrrrs[5][leg]] = -w_3_rrrrs_t_3
     for leg, k in legs[1]:
         (
         J_1_rrrs_xx, J_2_rrrs_xy, J_2_rrrs_xz, J_2_rrrs_yz, J_3_rrrs_xy, J_3_rrrs_xz, J_3_rrrs_yz,
@@ -8601,15 +8741,15 @@ def _run_legs(m, X, V, A):
             (abs(v_1_rrrs_z) > _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE *
             size_rrrs))
         )
-        out_leg_force[[3, 6][leg]] = c_true_rrrs_in_base_x
-        out_leg_force[[4, 7][leg]] = c_true_rrrs_in_base_y
-        out_leg_force[[5, 8][leg]] = c_true_rrrs_in_base_z
-        out_drive[[9, 15][leg]] = w_1_rrrs_t_3
-        out_drive[[10, 16][leg]] = w_1_rrrs_t_4
-        out_drive[[11, 17][leg]] = w_1_rrrs_t_5
-        out_drive[[12, 18][leg]] = -w_2_rrrs_t
-        out_drive[[13, 19][leg]] = -w_2_rrrs_t_2
-        out_drive[[14, 20][leg]] = -w_2_rrrs_t_3
+        out_leg_force[_leg_force_rrrs[0][leg]] = c_true_rrrs_in_base_x
+        out_leg_force[_leg_force_rrrs[1][leg]] = c_true_rrrs_in_base_y
+        out_leg_force[_leg_force_rrrs[2][leg]] = c_true_rrrs_in_base_z
+        out_drive[_drive_rrrs[0][leg]] = w_1_rrrs_t_3
+        out_drive[_drive_rrrs[1][leg]] = w_1_rrrs_t_4
+        out_drive[_drive_rrrs[2][leg]] = w_1_rrrs_t_5
+        out_drive[_drive_rrrs[3][leg]] = -w_2_rrrs_t
+        out_drive[_drive_rrrs[4][leg]] = -w_2_rrrs_t_2
+        out_drive[_drive_rrrs[5][leg]] = -w_2_rrrs_t_3
     return ok, (out_leg_force, out_drive,)
 
 
@@ -8656,7 +8796,7 @@ def _run_potential(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_potential = m.zeros(1)
+    out_potential = m.zeros("potential")
     # (V1) potential energy
     potential_t_5 = (
     gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + m_star*t_x) +
@@ -8944,10 +9084,10 @@ def _run_condition(m, X):
     reached = True
     clear = True
     valid = valid & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_H = m.zeros(49)
-    out_lengths = m.zeros(2)
-    out_pivots = m.zeros(3)
-    out_reach = m.zeros(3)
+    out_H = m.zeros("H")
+    out_lengths = m.zeros("lengths")
+    out_pivots = m.zeros("pivots")
+    out_reach = m.zeros("reach")
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
@@ -9147,22 +9287,22 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         spread_t_4,
         ))
-        out_H[[0][leg]] = w_1_rrrrs_t_3
-        out_H[[7][leg]] = w_1_rrrrs_t_4
-        out_H[[14][leg]] = w_1_rrrrs_t_5
-        out_H[[21][leg]] = H_a_1_rrrrs_x
-        out_H[[28][leg]] = H_a_1_rrrrs_y
-        out_H[[35][leg]] = H_a_1_rrrrs_z
-        out_H[[43][leg]] = 1.0
-        out_H[[2][leg]] = -w_3_rrrrs_t
-        out_H[[9][leg]] = -w_3_rrrrs_t_2
-        out_H[[16][leg]] = -w_3_rrrrs_t_3
-        out_H[[23][leg]] = H_a_3_rrrrs_x
-        out_H[[30][leg]] = H_a_3_rrrrs_y
-        out_H[[37][leg]] = H_a_3_rrrrs_z
-        out_H[[44][leg]] = -d1_qdd_3_rrrrs
-        out_pivots[[0][leg]] = least_pivots
-        out_reach[[0][leg]] = disc_3_rrrrs
+        out_H[_H_rrrrs[0][leg]] = w_1_rrrrs_t_3
+        out_H[_H_rrrrs[1][leg]] = w_1_rrrrs_t_4
+        out_H[_H_rrrrs[2][leg]] = w_1_rrrrs_t_5
+        out_H[_H_rrrrs[3][leg]] = H_a_1_rrrrs_x
+        out_H[_H_rrrrs[4][leg]] = H_a_1_rrrrs_y
+        out_H[_H_rrrrs[5][leg]] = H_a_1_rrrrs_z
+        out_H[_H_rrrrs[6][leg]] = 1.0
+        out_H[_H_rrrrs[7][leg]] = -w_3_rrrrs_t
+        out_H[_H_rrrrs[8][leg]] = -w_3_rrrrs_t_2
+        out_H[_H_rrrrs[9][leg]] = -w_3_rrrrs_t_3
+        out_H[_H_rrrrs[10][leg]] = H_a_3_rrrrs_x
+        out_H[_H_rrrrs[11][leg]] = H_a_3_rrrrs_y
+        out_H[_H_rrrrs[12][leg]] = H_a_3_rrrrs_z
+        out_H[_H_rrrrs[13][leg]] = -d1_qdd_3_rrrrs
+        out_pivots[_pivots_rrrrs[0][leg]] = least_pivots
+        out_reach[_reach_rrrrs[0][leg]] = disc_3_rrrrs
     total_rrrrs, = sums
     sums = [0.0] * 1
     for leg, k in legs[1]:
@@ -9325,20 +9465,20 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         spread_t_8,
         ))
-        out_H[[3, 5][leg]] = w_1_rrrs_t_3
-        out_H[[10, 12][leg]] = w_1_rrrs_t_4
-        out_H[[17, 19][leg]] = w_1_rrrs_t_5
-        out_H[[24, 26][leg]] = H_a_1_rrrs_x
-        out_H[[31, 33][leg]] = H_a_1_rrrs_y
-        out_H[[38, 40][leg]] = H_a_1_rrrs_z
-        out_H[[4, 6][leg]] = -w_2_rrrs_t
-        out_H[[11, 13][leg]] = -w_2_rrrs_t_2
-        out_H[[18, 20][leg]] = -w_2_rrrs_t_3
-        out_H[[25, 27][leg]] = H_a_2_rrrs_x
-        out_H[[32, 34][leg]] = H_a_2_rrrs_y
-        out_H[[39, 41][leg]] = H_a_2_rrrs_z
-        out_pivots[[1, 2][leg]] = least_pivots_2
-        out_reach[[1, 2][leg]] = disc_2_rrrs
+        out_H[_H_rrrs[0][leg]] = w_1_rrrs_t_3
+        out_H[_H_rrrs[1][leg]] = w_1_rrrs_t_4
+        out_H[_H_rrrs[2][leg]] = w_1_rrrs_t_5
+        out_H[_H_rrrs[3][leg]] = H_a_1_rrrs_x
+        out_H[_H_rrrs[4][leg]] = H_a_1_rrrs_y
+        out_H[_H_rrrs[5][leg]] = H_a_1_rrrs_z
+        out_H[_H_rrrs[6][leg]] = -w_2_rrrs_t
+        out_H[_H_rrrs[7][leg]] = -w_2_rrrs_t_2
+        out_H[_H_rrrs[8][leg]] = -w_2_rrrs_t_3
+        out_H[_H_rrrs[9][leg]] = H_a_2_rrrs_x
+        out_H[_H_rrrs[10][leg]] = H_a_2_rrrs_y
+        out_H[_H_rrrs[11][leg]] = H_a_2_rrrs_z
+        out_pivots[_pivots_rrrs[0][leg]] = least_pivots_2
+        out_reach[_reach_rrrs[0][leg]] = disc_2_rrrs
     total_rrrs, = sums
     # (C2) rms distance of the platform points from their centroid
     spread = sqrt(0.3333333333333333*total_rrrrs + 0.3333333333333333*total_rrrs)
@@ -9351,44 +9491,42 @@ _DEFAULT = Parameters()
 
 
 def _steps_M(m, X):
-    M_of_M, = m.run(_run_M, ((7, 7),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
     return (M_of_M,)
 
 
 def _steps_Z(m, X, V):
-    Z_of_Z, = m.run(_run_Z, ((7,),), X, V)
+    Z_of_Z, = m.run(_run_Z, ("Z",), X, V)
     return (Z_of_Z,)
 
 
 def _steps_H(m, X):
-    H_of_H, = m.run(_run_H, ((7, 7),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 
 def _steps_inverse_kinematics(m, X):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((10,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     return (q_of_inverse_kinematics,)
 
 
 def _steps_joint_rates(m, X, V):
-    qd_of_joint_rates, = m.run(_run_joint_rates, ((10,),), X, V)
+    qd_of_joint_rates, = m.run(_run_joint_rates, ("qd",), X, V)
     return (qd_of_joint_rates,)
 
 
 def _steps_joint_accelerations(m, X, V, A):
-    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ((10,),), X, V, A)
+    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
     return (qdd_of_joint_accelerations,)
 
 
 def _steps_dynamics(m, X, V):
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((7, 7), (7,), (7, 7)), X, V)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
 
 
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
-    required_of_required, H_of_required = m.run(_run_required, ((7,), (7, 7)), X, V, A)
+    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = _extended(wrench, 7)
     subtract_2 = required_of_required - extend_1
     solve_3 = _solve(H_of_required, subtract_2)
@@ -9396,9 +9534,7 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((7, 7), (7,), (7, 7)), X, V)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
     extend_2 = _extended(wrench, 7)
     add_3 = times_1 + extend_2
@@ -9413,25 +9549,25 @@ def _steps_complete_acceleration(m, X, V, A, wrench):
 
 
 def _steps_leg_reactions(m, X, V, A, wrench):
-    required_of_required, H_of_required = m.run(_run_required, ((7,), (7, 7)), X, V, A)
+    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = _extended(wrench, 7)
     subtract_2 = required_of_required - extend_1
     solve_3 = _solve(H_of_required, subtract_2)
-    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ((3, 3), (7, 3)), X, V, A)
+    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
     add_forces_4 = _with_forces(leg_force_of_legs, solve_3, drive_of_legs, [0, 0, 0, 1, 1, 2, 2])
     return (add_forces_4,)
 
 
 def _steps_energy(m, X, V):
-    M_of_M, = m.run(_run_M, ((7, 7),), X)
-    potential_of_potential, = m.run(_run_potential, ((1,),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
+    potential_of_potential, = m.run(_run_potential, ("potential",), X)
     half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
     entry_2 = potential_of_potential[0]
     return (half_form_1, entry_2,)
 
 
 def _steps_null_space(m, X):
-    H_of_H, = m.run(_run_H, ((7, 7),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     null_basis_1 = _null_basis(H_of_H, 7)
     return (null_basis_1,)
 
@@ -9439,7 +9575,7 @@ def _steps_null_space(m, X):
 def _steps_condition(m, X, length):
     (
     H_of_condition, lengths_of_condition, pivots_of_condition, reach_of_condition,
-    ) = m.run(_run_condition, ((7, 7), (2,), (3,), (3,)), X)
+    ) = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
     choose_length_1 = _chosen_length(lengths_of_condition, length)
     divide_rows_2 = _rows_divided(H_of_condition, choose_length_1, [3, 4, 5, 6])
     singular_values_3 = _singular_values(divide_rows_2)
@@ -9447,7 +9583,7 @@ def _steps_condition(m, X, length):
 
 
 def _steps_mismatch(m, X, q_actuated):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((10,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     take_1 = q_of_inverse_kinematics[[0, 1, 2, 4, 5, 7, 8]]
     subtract_2 = q_actuated - take_1
     wrap_turns_3 = _wrapped(subtract_2, [0, 1, 2, 3, 4, 5, 6])
@@ -9455,7 +9591,7 @@ def _steps_mismatch(m, X, q_actuated):
 
 
 def _steps_slope(m, X):
-    H_of_H, = m.run(_run_H, ((7, 7),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 

@@ -65,6 +65,53 @@ NJ = 6
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
 
+_SHAPES = {  # of the arrays that functions give
+    "M": (3, 3),
+    "Z": (3,),
+    "H": (3, 3),
+    "required": (3,),
+    "q": (6,),
+    "qd": (6,),
+    "qdd": (6,),
+    "leg_force": (3, 3),
+    "drive": (3, 3),
+    "potential": (1,),
+    "lengths": (2,),
+    "pivots": (3,),
+    "reach": (3,),
+}
+# Where the entries of a leg type's legs stand in these arrays, row by row.
+_H_prr = (
+    [0, 1, 2],
+    [3, 4, 5],
+    [6, 7, 8],
+)
+_q_prr = (
+    [0, 2, 4],
+    [1, 3, 5],
+)
+_qd_prr = (
+    [0, 2, 4],
+    [1, 3, 5],
+)
+_qdd_prr = (
+    [0, 2, 4],
+    [1, 3, 5],
+)
+_leg_force_prr = (
+    [0, 3, 6],
+    [1, 4, 7],
+)
+_drive_prr = (
+    [0, 3, 6],
+    [1, 4, 7],
+)
+_pivots_prr = (
+    [0, 1, 2],
+)
+_reach_prr = (
+    [0, 1, 2],
+)
 _DRIVEN_JOINTS = (0, 2, 4)
 
 _DEFAULTS = {
@@ -376,6 +423,7 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _prr = 3
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     platform_mass = p.platform_mass
@@ -445,14 +493,14 @@ def _prepare(p):
     )
     # (prr-V3) reciprocal vector 1
     inv_size = 1.0/size
-    total_prr = np.sum(np.broadcast_to(prr_link2_mass, 3))
-    total_prr_x = np.sum(np.broadcast_to(h_star_t_3, 3))
-    total_prr_y = np.sum(np.broadcast_to(h_star_t_4, 3))
-    total_prr_xx = np.sum(np.broadcast_to(J_star_t_7, 3))
-    total_prr_zz = np.sum(np.broadcast_to(J_star_t_8, 3))
-    total_prr_x_2 = np.sum(np.broadcast_to(prr_platform_point_x, 3))
-    total_prr_y_2 = np.sum(np.broadcast_to(prr_platform_point_y, 3))
-    total_prr_2 = np.sum(np.broadcast_to(size_t, 3))
+    total_prr = np.sum(np.broadcast_to(prr_link2_mass, _prr))
+    total_prr_x = np.sum(np.broadcast_to(h_star_t_3, _prr))
+    total_prr_y = np.sum(np.broadcast_to(h_star_t_4, _prr))
+    total_prr_xx = np.sum(np.broadcast_to(J_star_t_7, _prr))
+    total_prr_zz = np.sum(np.broadcast_to(J_star_t_8, _prr))
+    total_prr_x_2 = np.sum(np.broadcast_to(prr_platform_point_x, _prr))
+    total_prr_y_2 = np.sum(np.broadcast_to(prr_platform_point_y, _prr))
+    total_prr_2 = np.sum(np.broadcast_to(size_t, _prr))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_prr
     # (L2) first moment about the platform origin
@@ -475,7 +523,7 @@ def _prepare(p):
         "dynamics": (
         (J_star_t_10, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
-                (3,
+                (_prr,
         (J_2_zz, branch_1, g_r0_x, g_r0_y, h_2_x, h_2_y, inv_uu_2_t, prr_base_frame_xx,
                     prr_base_frame_xy, prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x,
                     prr_base_point_y, prr_link1_mass, prr_platform_joint_offset_x,
@@ -486,7 +534,7 @@ def _prepare(p):
         "M": (
         (J_star_t_10, h_star_x, h_star_y, m_star,),
             (
-                (3,
+                (_prr,
         (J_2_zz, branch_1, h_2_x, h_2_y, inv_uu_2_t, prr_base_frame_xx, prr_base_frame_xy,
                     prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
                     prr_link1_mass, prr_platform_joint_offset_x, prr_platform_point_x,
@@ -497,7 +545,7 @@ def _prepare(p):
         "Z": (
         (Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y,),
             (
-                (3,
+                (_prr,
         (J_2_zz, branch_1, g_r0_x, g_r0_y, h_2_x, h_2_y, inv_uu_2_t, prr_base_frame_xx,
                     prr_base_frame_xy, prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x,
                     prr_base_point_y, prr_link1_mass, prr_platform_joint_offset_x,
@@ -508,7 +556,7 @@ def _prepare(p):
         "H": (
         (),
             (
-                (3,
+                (_prr,
         (branch_1, inv_uu_2_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
                     prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
                     prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, size,
@@ -519,7 +567,7 @@ def _prepare(p):
         "required": (
         (J_star_zz, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
-                (3,
+                (_prr,
         (J_2_zz, branch_1, g_r0_x, g_r0_y, h_2_x, h_2_y, inv_uu_2_t, prr_base_frame_xx,
                     prr_base_frame_xy, prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x,
                     prr_base_point_y, prr_link1_mass, prr_platform_joint_offset_x,
@@ -530,7 +578,7 @@ def _prepare(p):
         "inverse_kinematics": (
         (),
             (
-                (3,
+                (_prr,
         (branch_1, inv_uu_2_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
                     prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
                     prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
@@ -541,7 +589,7 @@ def _prepare(p):
         "joint_rates": (
         (),
             (
-                (3,
+                (_prr,
         (branch_1, inv_uu_2_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
                     prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
                     prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, size,
@@ -552,7 +600,7 @@ def _prepare(p):
         "joint_accelerations": (
         (),
             (
-                (3,
+                (_prr,
         (branch_1, inv_uu_2_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
                     prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
                     prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, size,
@@ -563,7 +611,7 @@ def _prepare(p):
         "legs": (
         (),
             (
-                (3,
+                (_prr,
         (J_2_zz, branch_1, g_r0_x, g_r0_y, h_2_x, h_2_y, inv_uu_2_t, prr_base_frame_xx,
                     prr_base_frame_xy, prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x,
                     prr_base_point_y, prr_link1_mass, prr_link2_mass, prr_platform_joint_offset_x,
@@ -574,7 +622,7 @@ def _prepare(p):
         "potential": (
         (gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
-                (3,
+                (_prr,
         (b_r0_x, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, inv_uu_2_t, potential_t,
                     prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx, prr_base_frame_yy,
                     prr_base_point_x, prr_base_point_y, prr_link1_mass,
@@ -586,7 +634,7 @@ def _prepare(p):
         "condition": (
         (b_c_x, b_c_y, legs_size, spread_t,),
             (
-                (3,
+                (_prr,
         (branch_1, inv_size, inv_uu_2_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
                     prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
                     prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, size,
@@ -634,16 +682,16 @@ class _Floats:
         """Shared values, and (leg, its values) for every leg of each loop."""
         return _constants(self.p, name)[:2]
 
-    def zeros(self, size):
-        return [0.0] * size
+    def zeros(self, name):
+        return [0.0] * math.prod(_SHAPES[name])
 
     def added(self, sums, leg, terms):
         """Sums over the legs so far."""
         return [a + b for a, b in zip(sums, terms)]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(shape)), np.nan) for shape in shapes]
+        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
         for k in range(self.states):
             try:
@@ -653,7 +701,7 @@ class _Floats:
             if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
                 for a, array in zip(found, arrays):
                     a[k] = array
-        return [a.T.reshape(*shape, self.states) for a, shape in zip(found, shapes)]
+        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
 
 
 class _Arrays:
@@ -669,8 +717,8 @@ class _Arrays:
         shared, _, columns = _constants(self.p, name)
         return shared, columns
 
-    def zeros(self, size):
-        return np.zeros((size, self.states))
+    def zeros(self, name):
+        return np.zeros((math.prod(_SHAPES[name]), self.states))
 
     def every(self, good):
         """Whether it holds for all legs."""
@@ -681,7 +729,7 @@ class _Arrays:
         shape = (legs.stop, self.states)
         return [np.add.reduce(np.broadcast_to(t, shape), axis=0) for t in terms]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
         ok, arrays = function(self, *vectors)
         for a in arrays:
@@ -689,7 +737,7 @@ class _Arrays:
         if not np.all(ok):
             for a in arrays:
                 a[:, ~ok] = np.nan
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
 
 class _Judged(_Arrays):
@@ -699,12 +747,12 @@ class _Judged(_Arrays):
         super().__init__(p, states)
         self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
         (valid, reached, clear), arrays = function(self, *vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
             self.failed[code] |= ~np.broadcast_to(good, self.states)
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -1034,9 +1082,9 @@ def _run_dynamics(m, X, V):
     t_dot_y = V_1
     omega_z = V_2
     ok = True
-    out_M = m.zeros(9)
-    out_Z = m.zeros(3)
-    out_H = m.zeros(9)
+    out_M = m.zeros("M")
+    out_Z = m.zeros("Z")
+    out_H = m.zeros("H")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
     h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
@@ -1156,9 +1204,9 @@ def _run_dynamics(m, X, V):
         sums = m.added(sums, leg, (
         Q_t_5, Q_t_6, Q_t_7, M_ta_t, M_ta_t_2, M_aa_t, U_in_base_x, U_in_base_y, Z_a_t,
         ))
-        out_H[[0, 1, 2][leg]] = w_1_in_base_x
-        out_H[[3, 4, 5][leg]] = w_1_in_base_y
-        out_H[[6, 7, 8][leg]] = H_a_1_z
+        out_H[_H_prr[0][leg]] = w_1_in_base_x
+        out_H[_H_prr[1][leg]] = w_1_in_base_y
+        out_H[_H_prr[2][leg]] = H_a_1_z
     (
     total_prr_xx, total_prr_xy, total_prr_yy, total_prr_xz, total_prr_yz, total_prr_zz,
         total_prr_x, total_prr_y, total_prr_z,
@@ -1207,7 +1255,7 @@ def _run_M(m, X):
     R_xx = cos(X_2)
     R_yx = sin(X_2)
     ok = True
-    out_M = m.zeros(9)
+    out_M = m.zeros("M")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
     h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
@@ -1319,7 +1367,7 @@ def _run_Z(m, X, V):
     t_dot_y = V_1
     omega_z = V_2
     ok = True
-    out_Z = m.zeros(3)
+    out_Z = m.zeros("Z")
     # (P1) centripetal tensor of the platform
     W_p_t = omega_z*omega_z
     # (M4) centripetal force and weight of the platform
@@ -1429,7 +1477,7 @@ def _run_H(m, X):
     R_xx = cos(X_2)
     R_yx = sin(X_2)
     ok = True
-    out_H = m.zeros(9)
+    out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
         branch_1, inv_uu_2_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
@@ -1466,9 +1514,9 @@ def _run_H(m, X):
         # (M8) moment of the column's unit force about the platform origin
         H_a_1_z = q_in_base_x*w_1_in_base_y - q_in_base_y*w_1_in_base_x
         ok = ok & m.every((disc_1 >= 0.0) & (abs(-v_2_t) > _TOLERANCE * size))
-        out_H[[0, 1, 2][leg]] = w_1_in_base_x
-        out_H[[3, 4, 5][leg]] = w_1_in_base_y
-        out_H[[6, 7, 8][leg]] = H_a_1_z
+        out_H[_H_prr[0][leg]] = w_1_in_base_x
+        out_H[_H_prr[1][leg]] = w_1_in_base_y
+        out_H[_H_prr[2][leg]] = H_a_1_z
     return ok, (out_H,)
 
 
@@ -1502,8 +1550,8 @@ def _run_required(m, X, V, A):
     t_ddot_y = A_1
     alpha_z = A_2
     ok = True
-    out_required = m.zeros(3)
-    out_H = m.zeros(9)
+    out_required = m.zeros("required")
+    out_H = m.zeros("H")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
     h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
@@ -1602,9 +1650,9 @@ def _run_required(m, X, V, A):
         sums = m.added(sums, leg, (
         c_in_base_x, c_in_base_y, R_a_t,
         ))
-        out_H[[0, 1, 2][leg]] = w_1_in_base_x
-        out_H[[3, 4, 5][leg]] = w_1_in_base_y
-        out_H[[6, 7, 8][leg]] = H_a_1_z
+        out_H[_H_prr[0][leg]] = w_1_in_base_x
+        out_H[_H_prr[1][leg]] = w_1_in_base_y
+        out_H[_H_prr[2][leg]] = H_a_1_z
     total_prr_x, total_prr_y, total_prr_z = sums
     # (E4) force that actuators and external wrench must give
     R_t_x = f_p_x - total_prr_x
@@ -1633,7 +1681,7 @@ def _run_inverse_kinematics(m, X):
     R_xx = cos(X_2)
     R_yx = sin(X_2)
     ok = True
-    out_q = m.zeros(6)
+    out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
         branch_1, inv_uu_2_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
@@ -1657,8 +1705,8 @@ def _run_inverse_kinematics(m, X):
             S_y*prr_base_frame_yy), -inv_uu_2_t*prr_platform_joint_offset_x*q_1_t)
         )
         ok = ok & m.every((disc_1 >= 0.0))
-        out_q[[0, 2, 4][leg]] = q_1
-        out_q[[1, 3, 5][leg]] = q_2
+        out_q[_q_prr[0][leg]] = q_1
+        out_q[_q_prr[1][leg]] = q_2
     return ok, (out_q,)
 
 
@@ -1684,7 +1732,7 @@ def _run_joint_rates(m, X, V):
     t_dot_y = V_1
     omega_z = V_2
     ok = True
-    out_qd = m.zeros(6)
+    out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
         branch_1, inv_uu_2_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
@@ -1716,8 +1764,8 @@ def _run_joint_rates(m, X, V):
             + S_y*prr_base_frame_yy)
         )
         ok = ok & m.every((disc_1 >= 0.0) & (abs(-v_2_t) > _TOLERANCE * size))
-        out_qd[[0, 2, 4][leg]] = qd_2_t
-        out_qd[[1, 3, 5][leg]] = -qd_2
+        out_qd[_qd_prr[0][leg]] = qd_2_t
+        out_qd[_qd_prr[1][leg]] = -qd_2
     return ok, (out_qd,)
 
 
@@ -1750,7 +1798,7 @@ def _run_joint_accelerations(m, X, V, A):
     t_ddot_y = A_1
     alpha_z = A_2
     ok = True
-    out_qdd = m.zeros(6)
+    out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
         branch_1, inv_uu_2_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
@@ -1803,8 +1851,8 @@ def _run_joint_accelerations(m, X, V, A):
         qdd_2 = inv_v_2_t_2*(rel_x*s_2 - S_ddot_tip_y*c_2)
         qdd_1_t = S_ddot_tip_y*s_2 + c_2*rel_x + prr_platform_joint_offset_x*qdd_2*s_2
         ok = ok & m.every((disc_1 >= 0.0) & (abs(-v_2_t) > _TOLERANCE * size))
-        out_qdd[[0, 2, 4][leg]] = -qdd_1_t
-        out_qdd[[1, 3, 5][leg]] = -qdd_2
+        out_qdd[_qdd_prr[0][leg]] = -qdd_1_t
+        out_qdd[_qdd_prr[1][leg]] = -qdd_2
     return ok, (out_qdd,)
 
 
@@ -1837,8 +1885,8 @@ def _run_legs(m, X, V, A):
     t_ddot_y = A_1
     alpha_z = A_2
     ok = True
-    out_leg_force = m.zeros(9)
-    out_drive = m.zeros(9)
+    out_leg_force = m.zeros("leg_force")
+    out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
         J_2_zz, branch_1, g_r0_x, g_r0_y, h_2_x, h_2_y, inv_uu_2_t, prr_base_frame_xx,
@@ -1921,10 +1969,10 @@ def _run_legs(m, X, V, A):
         axis_y_prr_axes2_in_base_y*c_true_y - axis_y_prr_axes2_in_base_x*c_true_x
         )
         ok = ok & m.every((disc_1 >= 0.0) & (abs(-v_2_t_2) > _TOLERANCE * size))
-        out_leg_force[[0, 3, 6][leg]] = c_true_in_base_x
-        out_leg_force[[1, 4, 7][leg]] = c_true_in_base_y
-        out_drive[[0, 3, 6][leg]] = w_1_in_base_x
-        out_drive[[1, 4, 7][leg]] = w_1_in_base_y
+        out_leg_force[_leg_force_prr[0][leg]] = c_true_in_base_x
+        out_leg_force[_leg_force_prr[1][leg]] = c_true_in_base_y
+        out_drive[_drive_prr[0][leg]] = w_1_in_base_x
+        out_drive[_drive_prr[1][leg]] = w_1_in_base_y
     return ok, (out_leg_force, out_drive,)
 
 
@@ -1944,7 +1992,7 @@ def _run_potential(m, X):
     R_xx = cos(X_2)
     R_yx = sin(X_2)
     ok = True
-    out_potential = m.zeros(1)
+    out_potential = m.zeros("potential")
     # (V1) potential energy
     potential_t_2 = (
     gravity_x*(R_xx*h_star_x + m_star*t_x - R_yx*h_star_y) + gravity_y*(R_xx*h_star_y +
@@ -2009,10 +2057,10 @@ def _run_condition(m, X):
     valid = True
     reached = True
     clear = True
-    out_H = m.zeros(9)
-    out_lengths = m.zeros(2)
-    out_pivots = m.zeros(3)
-    out_reach = m.zeros(3)
+    out_H = m.zeros("H")
+    out_lengths = m.zeros("lengths")
+    out_pivots = m.zeros("pivots")
+    out_reach = m.zeros("reach")
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
@@ -2062,11 +2110,11 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         spread_t_4,
         ))
-        out_H[[0, 1, 2][leg]] = w_1_in_base_x
-        out_H[[3, 4, 5][leg]] = w_1_in_base_y
-        out_H[[6, 7, 8][leg]] = H_a_1_z
-        out_pivots[[0, 1, 2][leg]] = pivot
-        out_reach[[0, 1, 2][leg]] = disc_1
+        out_H[_H_prr[0][leg]] = w_1_in_base_x
+        out_H[_H_prr[1][leg]] = w_1_in_base_y
+        out_H[_H_prr[2][leg]] = H_a_1_z
+        out_pivots[_pivots_prr[0][leg]] = pivot
+        out_reach[_reach_prr[0][leg]] = disc_1
     total_prr, = sums
     # (C2) rms distance of the platform points from their centroid
     spread = spread_t*sqrt(total_prr)
@@ -2079,44 +2127,42 @@ _DEFAULT = Parameters()
 
 
 def _steps_M(m, X):
-    M_of_M, = m.run(_run_M, ((3, 3),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
     return (M_of_M,)
 
 
 def _steps_Z(m, X, V):
-    Z_of_Z, = m.run(_run_Z, ((3,),), X, V)
+    Z_of_Z, = m.run(_run_Z, ("Z",), X, V)
     return (Z_of_Z,)
 
 
 def _steps_H(m, X):
-    H_of_H, = m.run(_run_H, ((3, 3),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 
 def _steps_inverse_kinematics(m, X):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((6,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     return (q_of_inverse_kinematics,)
 
 
 def _steps_joint_rates(m, X, V):
-    qd_of_joint_rates, = m.run(_run_joint_rates, ((6,),), X, V)
+    qd_of_joint_rates, = m.run(_run_joint_rates, ("qd",), X, V)
     return (qd_of_joint_rates,)
 
 
 def _steps_joint_accelerations(m, X, V, A):
-    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ((6,),), X, V, A)
+    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
     return (qdd_of_joint_accelerations,)
 
 
 def _steps_dynamics(m, X, V):
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((3, 3), (3,), (3, 3)), X, V)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
 
 
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
-    required_of_required, H_of_required = m.run(_run_required, ((3,), (3, 3)), X, V, A)
+    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     solve_3 = _solve(H_of_required, subtract_2)
@@ -2124,9 +2170,7 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((3, 3), (3,), (3, 3)), X, V)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
     extend_2 = wrench
     add_3 = times_1 + extend_2
@@ -2141,25 +2185,25 @@ def _steps_complete_acceleration(m, X, V, A, wrench):
 
 
 def _steps_leg_reactions(m, X, V, A, wrench):
-    required_of_required, H_of_required = m.run(_run_required, ((3,), (3, 3)), X, V, A)
+    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     solve_3 = _solve(H_of_required, subtract_2)
-    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ((3, 3), (3, 3)), X, V, A)
+    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
     add_forces_4 = _with_forces(leg_force_of_legs, solve_3, drive_of_legs, [0, 1, 2])
     return (add_forces_4,)
 
 
 def _steps_energy(m, X, V):
-    M_of_M, = m.run(_run_M, ((3, 3),), X)
-    potential_of_potential, = m.run(_run_potential, ((1,),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
+    potential_of_potential, = m.run(_run_potential, ("potential",), X)
     half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
     entry_2 = potential_of_potential[0]
     return (half_form_1, entry_2,)
 
 
 def _steps_null_space(m, X):
-    H_of_H, = m.run(_run_H, ((3, 3),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     null_basis_1 = _null_basis(H_of_H, 3)
     return (null_basis_1,)
 
@@ -2167,7 +2211,7 @@ def _steps_null_space(m, X):
 def _steps_condition(m, X, length):
     (
     H_of_condition, lengths_of_condition, pivots_of_condition, reach_of_condition,
-    ) = m.run(_run_condition, ((3, 3), (2,), (3,), (3,)), X)
+    ) = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
     choose_length_1 = _chosen_length(lengths_of_condition, length)
     divide_rows_2 = _rows_divided(H_of_condition, choose_length_1, [2])
     singular_values_3 = _singular_values(divide_rows_2)
@@ -2175,14 +2219,14 @@ def _steps_condition(m, X, length):
 
 
 def _steps_mismatch(m, X, q_actuated):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((6,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     take_1 = q_of_inverse_kinematics[[0, 2, 4]]
     subtract_2 = q_actuated - take_1
     return (subtract_2,)
 
 
 def _steps_slope(m, X):
-    H_of_H, = m.run(_run_H, ((3, 3),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 

@@ -65,6 +65,50 @@ NJ = 6
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
 
+_SHAPES = {  # of the arrays that functions give
+    "M": (3, 3),
+    "Z": (3,),
+    "H": (3, 3),
+    "required": (3,),
+    "q": (6,),
+    "qd": (6,),
+    "qdd": (6,),
+    "leg_force": (3, 3),
+    "drive": (3, 3),
+    "potential": (1,),
+    "lengths": (2,),
+    "pivots": (3,),
+    "reach": (3,),
+}
+# Where the entries of a leg type's legs stand in these arrays, row by row.
+_H_rpr = (
+    [0, 1, 2],
+    [3, 4, 5],
+    [6, 7, 8],
+)
+_q_rpr = (
+    [0, 2, 4],
+    [1, 3, 5],
+)
+_qd_rpr = (
+    [0, 2, 4],
+    [1, 3, 5],
+)
+_qdd_rpr = (
+    [0, 2, 4],
+    [1, 3, 5],
+)
+_leg_force_rpr = (
+    [0, 3, 6],
+    [1, 4, 7],
+)
+_drive_rpr = (
+    [0, 3, 6],
+    [1, 4, 7],
+)
+_pivots_rpr = (
+    [0, 1, 2],
+)
 _DRIVEN_JOINTS = (1, 3, 5)
 
 _DEFAULTS = {
@@ -369,6 +413,7 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _rpr = 3
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     platform_mass = p.platform_mass
@@ -438,13 +483,13 @@ def _prepare(p):
     # (V1) potential energy
     b_r0_x = rpr_base_frame_xx*rpr_base_point_x + rpr_base_frame_yx*rpr_base_point_y
     b_r0_y = rpr_base_frame_xy*rpr_base_point_x + rpr_base_frame_yy*rpr_base_point_y
-    total_rpr = np.sum(np.broadcast_to(rpr_link2_mass, 3))
-    total_rpr_x = np.sum(np.broadcast_to(h_star_t_3, 3))
-    total_rpr_y = np.sum(np.broadcast_to(h_star_t_4, 3))
-    total_rpr_xx = np.sum(np.broadcast_to(J_star_t_7, 3))
-    total_rpr_zz = np.sum(np.broadcast_to(J_star_t_8, 3))
-    total_rpr_x_2 = np.sum(np.broadcast_to(rpr_platform_point_x, 3))
-    total_rpr_y_2 = np.sum(np.broadcast_to(rpr_platform_point_y, 3))
+    total_rpr = np.sum(np.broadcast_to(rpr_link2_mass, _rpr))
+    total_rpr_x = np.sum(np.broadcast_to(h_star_t_3, _rpr))
+    total_rpr_y = np.sum(np.broadcast_to(h_star_t_4, _rpr))
+    total_rpr_xx = np.sum(np.broadcast_to(J_star_t_7, _rpr))
+    total_rpr_zz = np.sum(np.broadcast_to(J_star_t_8, _rpr))
+    total_rpr_x_2 = np.sum(np.broadcast_to(rpr_platform_point_x, _rpr))
+    total_rpr_y_2 = np.sum(np.broadcast_to(rpr_platform_point_y, _rpr))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_rpr
     # (L2) first moment about the platform origin
@@ -465,7 +510,7 @@ def _prepare(p):
         "dynamics": (
         (J_star_t_10, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
-                (3,
+                (_rpr,
         (J_group_1_zz, branch_1, h_1_x, h_1_y, h_2_x, h_2_y, rpr_base_frame_xx, rpr_base_frame_xy,
                     rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y,
                     rpr_platform_point_x, rpr_platform_point_y,),
@@ -475,7 +520,7 @@ def _prepare(p):
         "M": (
         (J_star_t_10, h_star_x, h_star_y, m_star,),
             (
-                (3,
+                (_rpr,
         (J_group_1_zz, branch_1, h_2_x, h_2_y, rpr_base_frame_xx, rpr_base_frame_xy,
                     rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y,
                     rpr_platform_point_x, rpr_platform_point_y,),
@@ -485,7 +530,7 @@ def _prepare(p):
         "Z": (
         (Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y,),
             (
-                (3,
+                (_rpr,
         (J_group_1_zz, branch_1, h_1_x, h_1_y, h_2_x, h_2_y, rpr_base_frame_xx, rpr_base_frame_xy,
                     rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y,
                     rpr_platform_point_x, rpr_platform_point_y,),
@@ -495,7 +540,7 @@ def _prepare(p):
         "H": (
         (),
             (
-                (3,
+                (_rpr,
         (branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
                     rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
                     rpr_platform_point_y,),
@@ -505,7 +550,7 @@ def _prepare(p):
         "required": (
         (J_star_zz, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
-                (3,
+                (_rpr,
         (J_group_1_zz, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, rpr_base_frame_xx,
                     rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
                     rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y,),
@@ -515,7 +560,7 @@ def _prepare(p):
         "inverse_kinematics": (
         (),
             (
-                (3,
+                (_rpr,
         (branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
                     rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
                     rpr_platform_point_y,),
@@ -525,7 +570,7 @@ def _prepare(p):
         "joint_rates": (
         (),
             (
-                (3,
+                (_rpr,
         (branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
                     rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
                     rpr_platform_point_y,),
@@ -535,7 +580,7 @@ def _prepare(p):
         "joint_accelerations": (
         (),
             (
-                (3,
+                (_rpr,
         (branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
                     rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
                     rpr_platform_point_y,),
@@ -545,7 +590,7 @@ def _prepare(p):
         "legs": (
         (),
             (
-                (3,
+                (_rpr,
         (J_group_1_zz, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, rpr_base_frame_xx,
                     rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
                     rpr_base_point_y, rpr_link2_mass, rpr_platform_point_x,
@@ -556,7 +601,7 @@ def _prepare(p):
         "potential": (
         (gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
-                (3,
+                (_rpr,
         (b_r0_x, b_r0_y, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, rpr_base_frame_xx,
                     rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
                     rpr_base_point_y, rpr_link1_mass, rpr_platform_point_x,
@@ -567,7 +612,7 @@ def _prepare(p):
         "condition": (
         (b_c_x, b_c_y, legs_size, spread_t,),
             (
-                (3,
+                (_rpr,
         (branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
                     rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
                     rpr_platform_point_y,),
@@ -614,16 +659,16 @@ class _Floats:
         """Shared values, and (leg, its values) for every leg of each loop."""
         return _constants(self.p, name)[:2]
 
-    def zeros(self, size):
-        return [0.0] * size
+    def zeros(self, name):
+        return [0.0] * math.prod(_SHAPES[name])
 
     def added(self, sums, leg, terms):
         """Sums over the legs so far."""
         return [a + b for a, b in zip(sums, terms)]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(shape)), np.nan) for shape in shapes]
+        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
         for k in range(self.states):
             try:
@@ -633,7 +678,7 @@ class _Floats:
             if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
                 for a, array in zip(found, arrays):
                     a[k] = array
-        return [a.T.reshape(*shape, self.states) for a, shape in zip(found, shapes)]
+        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
 
 
 class _Arrays:
@@ -649,8 +694,8 @@ class _Arrays:
         shared, _, columns = _constants(self.p, name)
         return shared, columns
 
-    def zeros(self, size):
-        return np.zeros((size, self.states))
+    def zeros(self, name):
+        return np.zeros((math.prod(_SHAPES[name]), self.states))
 
     def every(self, good):
         """Whether it holds for all legs."""
@@ -661,7 +706,7 @@ class _Arrays:
         shape = (legs.stop, self.states)
         return [np.add.reduce(np.broadcast_to(t, shape), axis=0) for t in terms]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
         ok, arrays = function(self, *vectors)
         for a in arrays:
@@ -669,7 +714,7 @@ class _Arrays:
         if not np.all(ok):
             for a in arrays:
                 a[:, ~ok] = np.nan
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
 
 class _Judged(_Arrays):
@@ -679,12 +724,12 @@ class _Judged(_Arrays):
         super().__init__(p, states)
         self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
         (valid, reached, clear), arrays = function(self, *vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
             self.failed[code] |= ~np.broadcast_to(good, self.states)
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -1014,9 +1059,9 @@ def _run_dynamics(m, X, V):
     t_dot_y = V_1
     omega_z = V_2
     ok = True
-    out_M = m.zeros(9)
-    out_Z = m.zeros(3)
-    out_H = m.zeros(9)
+    out_M = m.zeros("M")
+    out_Z = m.zeros("Z")
+    out_H = m.zeros("H")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
     h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
@@ -1113,9 +1158,9 @@ def _run_dynamics(m, X, V):
         sums = m.added(sums, leg, (
         Q_t_4, Q_t_5, Q_t_6, M_ta_t, M_ta_t_2, M_aa_t, U_in_base_x, U_in_base_y, Z_a_t,
         ))
-        out_H[[0, 1, 2][leg]] = axis_x_x
-        out_H[[3, 4, 5][leg]] = axis_x_y
-        out_H[[6, 7, 8][leg]] = H_a_2_z
+        out_H[_H_rpr[0][leg]] = axis_x_x
+        out_H[_H_rpr[1][leg]] = axis_x_y
+        out_H[_H_rpr[2][leg]] = H_a_2_z
     (
     total_rpr_xx, total_rpr_xy, total_rpr_yy, total_rpr_xz, total_rpr_yz, total_rpr_zz,
         total_rpr_x, total_rpr_y, total_rpr_z,
@@ -1164,7 +1209,7 @@ def _run_M(m, X):
     R_xx = cos(X_2)
     R_yx = sin(X_2)
     ok = True
-    out_M = m.zeros(9)
+    out_M = m.zeros("M")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
     h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
@@ -1259,7 +1304,7 @@ def _run_Z(m, X, V):
     t_dot_y = V_1
     omega_z = V_2
     ok = True
-    out_Z = m.zeros(3)
+    out_Z = m.zeros("Z")
     # (P1) centripetal tensor of the platform
     W_p_t = omega_z*omega_z
     # (M4) centripetal force and weight of the platform
@@ -1362,7 +1407,7 @@ def _run_H(m, X):
     R_xx = cos(X_2)
     R_yx = sin(X_2)
     ok = True
-    out_H = m.zeros(9)
+    out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
         branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
@@ -1391,9 +1436,9 @@ def _run_H(m, X):
         ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1) > _TOLERANCE
             * 0.62))
         )
-        out_H[[0, 1, 2][leg]] = axis_x_x
-        out_H[[3, 4, 5][leg]] = axis_x_y
-        out_H[[6, 7, 8][leg]] = H_a_2_z
+        out_H[_H_rpr[0][leg]] = axis_x_x
+        out_H[_H_rpr[1][leg]] = axis_x_y
+        out_H[_H_rpr[2][leg]] = H_a_2_z
     return ok, (out_H,)
 
 
@@ -1427,8 +1472,8 @@ def _run_required(m, X, V, A):
     t_ddot_y = A_1
     alpha_z = A_2
     ok = True
-    out_required = m.zeros(3)
-    out_H = m.zeros(9)
+    out_required = m.zeros("required")
+    out_H = m.zeros("H")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
     h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
@@ -1517,9 +1562,9 @@ def _run_required(m, X, V, A):
         sums = m.added(sums, leg, (
         c_in_base_x, c_in_base_y, R_a_t,
         ))
-        out_H[[0, 1, 2][leg]] = axis_x_x
-        out_H[[3, 4, 5][leg]] = axis_x_y
-        out_H[[6, 7, 8][leg]] = H_a_2_z
+        out_H[_H_rpr[0][leg]] = axis_x_x
+        out_H[_H_rpr[1][leg]] = axis_x_y
+        out_H[_H_rpr[2][leg]] = H_a_2_z
     total_rpr_x, total_rpr_y, total_rpr_z = sums
     # (E4) force that actuators and external wrench must give
     R_t_x = f_p_x - total_rpr_x
@@ -1548,7 +1593,7 @@ def _run_inverse_kinematics(m, X):
     R_xx = cos(X_2)
     R_yx = sin(X_2)
     ok = True
-    out_q = m.zeros(6)
+    out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
         branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
@@ -1573,8 +1618,8 @@ def _run_inverse_kinematics(m, X):
         ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1) > _TOLERANCE
             * 0.62))
         )
-        out_q[[0, 2, 4][leg]] = q_1
-        out_q[[1, 3, 5][leg]] = root_1
+        out_q[_q_rpr[0][leg]] = q_1
+        out_q[_q_rpr[1][leg]] = root_1
     return ok, (out_q,)
 
 
@@ -1600,7 +1645,7 @@ def _run_joint_rates(m, X, V):
     t_dot_y = V_1
     omega_z = V_2
     ok = True
-    out_qd = m.zeros(6)
+    out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
         branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
@@ -1633,8 +1678,8 @@ def _run_joint_rates(m, X, V):
         ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1) > _TOLERANCE
             * 0.62))
         )
-        out_qd[[0, 2, 4][leg]] = qd_1
-        out_qd[[1, 3, 5][leg]] = S_dot_tip_x
+        out_qd[_qd_rpr[0][leg]] = qd_1
+        out_qd[_qd_rpr[1][leg]] = S_dot_tip_x
     return ok, (out_qd,)
 
 
@@ -1667,7 +1712,7 @@ def _run_joint_accelerations(m, X, V, A):
     t_ddot_y = A_1
     alpha_z = A_2
     ok = True
-    out_qdd = m.zeros(6)
+    out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
         branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
@@ -1713,8 +1758,8 @@ def _run_joint_accelerations(m, X, V, A):
         ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1) > _TOLERANCE
             * 0.62))
         )
-        out_qdd[[0, 2, 4][leg]] = qdd_1
-        out_qdd[[1, 3, 5][leg]] = rel_x
+        out_qdd[_qdd_rpr[0][leg]] = qdd_1
+        out_qdd[_qdd_rpr[1][leg]] = rel_x
     return ok, (out_qdd,)
 
 
@@ -1747,8 +1792,8 @@ def _run_legs(m, X, V, A):
     t_ddot_y = A_1
     alpha_z = A_2
     ok = True
-    out_leg_force = m.zeros(9)
-    out_drive = m.zeros(9)
+    out_leg_force = m.zeros("leg_force")
+    out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
         J_group_1_zz, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, rpr_base_frame_xx,
@@ -1815,10 +1860,10 @@ def _run_legs(m, X, V, A):
         ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1) > _TOLERANCE
             * 0.62))
         )
-        out_leg_force[[0, 3, 6][leg]] = c_true_in_base_x
-        out_leg_force[[1, 4, 7][leg]] = c_true_in_base_y
-        out_drive[[0, 3, 6][leg]] = axis_x_x
-        out_drive[[1, 4, 7][leg]] = axis_x_y
+        out_leg_force[_leg_force_rpr[0][leg]] = c_true_in_base_x
+        out_leg_force[_leg_force_rpr[1][leg]] = c_true_in_base_y
+        out_drive[_drive_rpr[0][leg]] = axis_x_x
+        out_drive[_drive_rpr[1][leg]] = axis_x_y
     return ok, (out_leg_force, out_drive,)
 
 
@@ -1838,7 +1883,7 @@ def _run_potential(m, X):
     R_xx = cos(X_2)
     R_yx = sin(X_2)
     ok = True
-    out_potential = m.zeros(1)
+    out_potential = m.zeros("potential")
     # (V1) potential energy
     potential_t = (
     gravity_x*(R_xx*h_star_x + m_star*t_x - R_yx*h_star_y) + gravity_y*(R_xx*h_star_y +
@@ -1906,10 +1951,10 @@ def _run_condition(m, X):
     valid = True
     reached = True
     clear = True
-    out_H = m.zeros(9)
-    out_lengths = m.zeros(2)
-    out_pivots = m.zeros(3)
-    out_reach = m.zeros(3)
+    out_H = m.zeros("H")
+    out_lengths = m.zeros("lengths")
+    out_pivots = m.zeros("pivots")
+    out_reach = m.zeros("reach")
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
@@ -1953,10 +1998,10 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         spread_t_4,
         ))
-        out_H[[0, 1, 2][leg]] = axis_x_x
-        out_H[[3, 4, 5][leg]] = axis_x_y
-        out_H[[6, 7, 8][leg]] = H_a_2_z
-        out_pivots[[0, 1, 2][leg]] = least_pivots
+        out_H[_H_rpr[0][leg]] = axis_x_x
+        out_H[_H_rpr[1][leg]] = axis_x_y
+        out_H[_H_rpr[2][leg]] = H_a_2_z
+        out_pivots[_pivots_rpr[0][leg]] = least_pivots
     total_rpr, = sums
     # (C2) rms distance of the platform points from their centroid
     spread = spread_t*sqrt(total_rpr)
@@ -1969,44 +2014,42 @@ _DEFAULT = Parameters()
 
 
 def _steps_M(m, X):
-    M_of_M, = m.run(_run_M, ((3, 3),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
     return (M_of_M,)
 
 
 def _steps_Z(m, X, V):
-    Z_of_Z, = m.run(_run_Z, ((3,),), X, V)
+    Z_of_Z, = m.run(_run_Z, ("Z",), X, V)
     return (Z_of_Z,)
 
 
 def _steps_H(m, X):
-    H_of_H, = m.run(_run_H, ((3, 3),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 
 def _steps_inverse_kinematics(m, X):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((6,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     return (q_of_inverse_kinematics,)
 
 
 def _steps_joint_rates(m, X, V):
-    qd_of_joint_rates, = m.run(_run_joint_rates, ((6,),), X, V)
+    qd_of_joint_rates, = m.run(_run_joint_rates, ("qd",), X, V)
     return (qd_of_joint_rates,)
 
 
 def _steps_joint_accelerations(m, X, V, A):
-    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ((6,),), X, V, A)
+    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
     return (qdd_of_joint_accelerations,)
 
 
 def _steps_dynamics(m, X, V):
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((3, 3), (3,), (3, 3)), X, V)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
 
 
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
-    required_of_required, H_of_required = m.run(_run_required, ((3,), (3, 3)), X, V, A)
+    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     solve_3 = _solve(H_of_required, subtract_2)
@@ -2014,9 +2057,7 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((3, 3), (3,), (3, 3)), X, V)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
     extend_2 = wrench
     add_3 = times_1 + extend_2
@@ -2031,25 +2072,25 @@ def _steps_complete_acceleration(m, X, V, A, wrench):
 
 
 def _steps_leg_reactions(m, X, V, A, wrench):
-    required_of_required, H_of_required = m.run(_run_required, ((3,), (3, 3)), X, V, A)
+    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     solve_3 = _solve(H_of_required, subtract_2)
-    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ((3, 3), (3, 3)), X, V, A)
+    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
     add_forces_4 = _with_forces(leg_force_of_legs, solve_3, drive_of_legs, [0, 1, 2])
     return (add_forces_4,)
 
 
 def _steps_energy(m, X, V):
-    M_of_M, = m.run(_run_M, ((3, 3),), X)
-    potential_of_potential, = m.run(_run_potential, ((1,),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
+    potential_of_potential, = m.run(_run_potential, ("potential",), X)
     half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
     entry_2 = potential_of_potential[0]
     return (half_form_1, entry_2,)
 
 
 def _steps_null_space(m, X):
-    H_of_H, = m.run(_run_H, ((3, 3),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     null_basis_1 = _null_basis(H_of_H, 3)
     return (null_basis_1,)
 
@@ -2057,7 +2098,7 @@ def _steps_null_space(m, X):
 def _steps_condition(m, X, length):
     (
     H_of_condition, lengths_of_condition, pivots_of_condition, reach_of_condition,
-    ) = m.run(_run_condition, ((3, 3), (2,), (3,), (3,)), X)
+    ) = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
     choose_length_1 = _chosen_length(lengths_of_condition, length)
     divide_rows_2 = _rows_divided(H_of_condition, choose_length_1, [2])
     singular_values_3 = _singular_values(divide_rows_2)
@@ -2065,14 +2106,14 @@ def _steps_condition(m, X, length):
 
 
 def _steps_mismatch(m, X, q_actuated):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((6,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     take_1 = q_of_inverse_kinematics[[1, 3, 5]]
     subtract_2 = q_actuated - take_1
     return (subtract_2,)
 
 
 def _steps_slope(m, X):
-    H_of_H, = m.run(_run_H, ((3, 3),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 

@@ -65,6 +65,112 @@ NJ = 6
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
 
+_SHAPES = {  # of the arrays that functions give
+    "M": (3, 3),
+    "Z": (3,),
+    "H": (3, 3),
+    "required": (3,),
+    "q": (6,),
+    "qd": (6,),
+    "qdd": (6,),
+    "leg_force": (3, 3),
+    "drive": (3, 3),
+    "potential": (1,),
+    "lengths": (2,),
+    "pivots": (3,),
+    "reach": (3,),
+}
+# Where the entries of a leg type's legs stand in these arrays, row by row.
+_H_rpr = (
+    [0],
+    [3],
+    [6],
+)
+_H_rrr = (
+    [1],
+    [4],
+    [7],
+)
+_H_prr = (
+    [2],
+    [5],
+    [8],
+)
+_q_rpr = (
+    [0],
+    [1],
+)
+_q_rrr = (
+    [2],
+    [3],
+)
+_q_prr = (
+    [4],
+    [5],
+)
+_qd_rpr = (
+    [0],
+    [1],
+)
+_qd_rrr = (
+    [2],
+    [3],
+)
+_qd_prr = (
+    [4],
+    [5],
+)
+_qdd_rpr = (
+    [0],
+    [1],
+)
+_qdd_rrr = (
+    [2],
+    [3],
+)
+_qdd_prr = (
+    [4],
+    [5],
+)
+_leg_force_rpr = (
+    [0],
+    [1],
+)
+_drive_rpr = (
+    [0],
+    [1],
+)
+_leg_force_rrr = (
+    [3],
+    [4],
+)
+_drive_rrr = (
+    [3],
+    [4],
+)
+_leg_force_prr = (
+    [6],
+    [7],
+)
+_drive_prr = (
+    [6],
+    [7],
+)
+_pivots_rpr = (
+    [0],
+)
+_pivots_rrr = (
+    [1],
+)
+_reach_rrr = (
+    [1],
+)
+_pivots_prr = (
+    [2],
+)
+_reach_prr = (
+    [2],
+)
 _DRIVEN_JOINTS = (1, 2, 4)
 
 _DEFAULTS = {
@@ -458,6 +564,9 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _rpr = 1
+    _rrr = 1
+    _prr = 1
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     platform_mass = p.platform_mass
@@ -560,13 +669,13 @@ def _prepare(p):
     # (V1) potential energy
     b_rpr_r0_x = rpr_base_frame_xx*rpr_base_point_x + rpr_base_frame_yx*rpr_base_point_y
     b_rpr_r0_y = rpr_base_frame_xy*rpr_base_point_x + rpr_base_frame_yy*rpr_base_point_y
-    total_rpr = np.sum(np.broadcast_to(rpr_link2_mass, 1))
-    total_rpr_x = np.sum(np.broadcast_to(h_star_t_3, 1))
-    total_rpr_y = np.sum(np.broadcast_to(h_star_t_4, 1))
-    total_rpr_xx = np.sum(np.broadcast_to(J_star_t_7, 1))
-    total_rpr_zz = np.sum(np.broadcast_to(J_star_t_8, 1))
-    total_rpr_x_2 = np.sum(np.broadcast_to(rpr_platform_point_x, 1))
-    total_rpr_y_2 = np.sum(np.broadcast_to(rpr_platform_point_y, 1))
+    total_rpr = np.sum(np.broadcast_to(rpr_link2_mass, _rpr))
+    total_rpr_x = np.sum(np.broadcast_to(h_star_t_3, _rpr))
+    total_rpr_y = np.sum(np.broadcast_to(h_star_t_4, _rpr))
+    total_rpr_xx = np.sum(np.broadcast_to(J_star_t_7, _rpr))
+    total_rpr_zz = np.sum(np.broadcast_to(J_star_t_8, _rpr))
+    total_rpr_x_2 = np.sum(np.broadcast_to(rpr_platform_point_x, _rpr))
+    total_rpr_y_2 = np.sum(np.broadcast_to(rpr_platform_point_y, _rpr))
     # (rrr-K17) squared length, across the axis, of the direction fixed in link 2
     uu_2_rrr_t = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x
     # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
@@ -632,14 +741,14 @@ def _prepare(p):
     inv_rho2_1_rrr_t_4 = 1.0/rho2_1_rrr_t
     # (rrr-V5) reciprocal vector 1
     inv_size_rrr = 1.0/size_rrr
-    total_rrr = np.sum(np.broadcast_to(rrr_link2_mass, 1))
-    total_rrr_x = np.sum(np.broadcast_to(h_star_t_5, 1))
-    total_rrr_y = np.sum(np.broadcast_to(h_star_t_6, 1))
-    total_rrr_xx = np.sum(np.broadcast_to(J_star_t_11, 1))
-    total_rrr_zz = np.sum(np.broadcast_to(J_star_t_12, 1))
-    total_rrr_x_2 = np.sum(np.broadcast_to(rrr_platform_point_x, 1))
-    total_rrr_y_2 = np.sum(np.broadcast_to(rrr_platform_point_y, 1))
-    total_rrr_2 = np.sum(np.broadcast_to(size_rrr_t, 1))
+    total_rrr = np.sum(np.broadcast_to(rrr_link2_mass, _rrr))
+    total_rrr_x = np.sum(np.broadcast_to(h_star_t_5, _rrr))
+    total_rrr_y = np.sum(np.broadcast_to(h_star_t_6, _rrr))
+    total_rrr_xx = np.sum(np.broadcast_to(J_star_t_11, _rrr))
+    total_rrr_zz = np.sum(np.broadcast_to(J_star_t_12, _rrr))
+    total_rrr_x_2 = np.sum(np.broadcast_to(rrr_platform_point_x, _rrr))
+    total_rrr_y_2 = np.sum(np.broadcast_to(rrr_platform_point_y, _rrr))
+    total_rrr_2 = np.sum(np.broadcast_to(size_rrr_t, _rrr))
     # (prr-K6) squared length, across the axis, of the direction fixed in link 2
     uu_2_prr_t = prr_platform_joint_offset_x*prr_platform_joint_offset_x
     # (prr-K7) cosine of the angle of joint 2 from its reference direction
@@ -678,14 +787,14 @@ def _prepare(p):
     )
     # (prr-V3) reciprocal vector 1
     inv_size_prr = 1.0/size_prr
-    total_prr = np.sum(np.broadcast_to(prr_link2_mass, 1))
-    total_prr_x = np.sum(np.broadcast_to(h_star_t_7, 1))
-    total_prr_y = np.sum(np.broadcast_to(h_star_t_8, 1))
-    total_prr_xx = np.sum(np.broadcast_to(J_star_t_15, 1))
-    total_prr_zz = np.sum(np.broadcast_to(J_star_t_16, 1))
-    total_prr_x_2 = np.sum(np.broadcast_to(prr_platform_point_x, 1))
-    total_prr_y_2 = np.sum(np.broadcast_to(prr_platform_point_y, 1))
-    total_prr_2 = np.sum(np.broadcast_to(size_prr_t, 1))
+    total_prr = np.sum(np.broadcast_to(prr_link2_mass, _prr))
+    total_prr_x = np.sum(np.broadcast_to(h_star_t_7, _prr))
+    total_prr_y = np.sum(np.broadcast_to(h_star_t_8, _prr))
+    total_prr_xx = np.sum(np.broadcast_to(J_star_t_15, _prr))
+    total_prr_zz = np.sum(np.broadcast_to(J_star_t_16, _prr))
+    total_prr_x_2 = np.sum(np.broadcast_to(prr_platform_point_x, _prr))
+    total_prr_y_2 = np.sum(np.broadcast_to(prr_platform_point_y, _prr))
+    total_prr_2 = np.sum(np.broadcast_to(size_prr_t, _prr))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_prr + total_rpr + total_rrr
     # (L2) first moment about the platform origin
@@ -716,13 +825,13 @@ def _prepare(p):
         "dynamics": (
         (J_star_t_18, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
-                (1,
+                (_rpr,
         (J_group_1_rpr_zz, branch_1_rpr, h_1_rpr_x, h_1_rpr_y, h_2_rpr_x, h_2_rpr_y,
                     rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
                     rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
                     rpr_platform_point_y,),
                 ),
-                (1,
+                (_rrr,
         (J_1_rrr_zz, J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr,
                     d_Gamma_1_rrr_t, d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, g_r0_x_2,
                     g_r0_y_2, h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
@@ -732,7 +841,7 @@ def _prepare(p):
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
                     size_rrr,),
                 ),
-                (1,
+                (_prr,
         (J_2_prr_zz, branch_1_prr, g_r0_x, g_r0_y, h_2_prr_x, h_2_prr_y, inv_uu_2_prr_t,
                     prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx, prr_base_frame_yy,
                     prr_base_point_x, prr_base_point_y, prr_link1_mass,
@@ -744,12 +853,12 @@ def _prepare(p):
         "M": (
         (J_star_t_18, h_star_x, h_star_y, m_star,),
             (
-                (1,
+                (_rpr,
         (J_group_1_rpr_zz, branch_1_rpr, h_2_rpr_x, h_2_rpr_y, rpr_base_frame_xx,
                     rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
                     rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y,),
                 ),
-                (1,
+                (_rrr,
         (J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, d_Gamma_1_rrr_t,
                     d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, h_2_rrr_y, inv_Kd_1_rrr_t_5,
                     inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
@@ -758,7 +867,7 @@ def _prepare(p):
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
                     size_rrr,),
                 ),
-                (1,
+                (_prr,
         (J_2_prr_zz, branch_1_prr, h_2_prr_x, h_2_prr_y, inv_uu_2_prr_t, prr_base_frame_xx,
                     prr_base_frame_xy, prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x,
                     prr_base_point_y, prr_link1_mass, prr_platform_joint_offset_x,
@@ -769,13 +878,13 @@ def _prepare(p):
         "Z": (
         (Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y,),
             (
-                (1,
+                (_rpr,
         (J_group_1_rpr_zz, branch_1_rpr, h_1_rpr_x, h_1_rpr_y, h_2_rpr_x, h_2_rpr_y,
                     rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
                     rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
                     rpr_platform_point_y,),
                 ),
-                (1,
+                (_rrr,
         (J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x_2, g_r0_y_2,
                     h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
                     inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
@@ -784,7 +893,7 @@ def _prepare(p):
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
                     size_rrr,),
                 ),
-                (1,
+                (_prr,
         (J_2_prr_zz, branch_1_prr, g_r0_x, g_r0_y, h_2_prr_x, h_2_prr_y, inv_uu_2_prr_t,
                     prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx, prr_base_frame_yy,
                     prr_base_point_x, prr_base_point_y, prr_link1_mass,
@@ -796,19 +905,19 @@ def _prepare(p):
         "H": (
         (),
             (
-                (1,
+                (_rpr,
         (branch_1_rpr, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
                     rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
                     rpr_platform_point_y,),
                 ),
-                (1,
+                (_rrr,
         (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t, rho2_1_rrr_t,
                     rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
                     rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
                     size_rrr,),
                 ),
-                (1,
+                (_prr,
         (branch_1_prr, inv_uu_2_prr_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
                     prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
                     prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
@@ -819,13 +928,13 @@ def _prepare(p):
         "required": (
         (J_star_zz, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
-                (1,
+                (_rpr,
         (J_group_1_rpr_zz, branch_1_rpr, g_r0_x_3, g_r0_y_3, h_1_rpr_x, h_1_rpr_y, h_2_rpr_x,
                     h_2_rpr_y, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
                     rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
                     rpr_platform_point_y,),
                 ),
-                (1,
+                (_rrr,
         (J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x_2, g_r0_y_2,
                     h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
                     inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
@@ -834,7 +943,7 @@ def _prepare(p):
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
                     size_rrr,),
                 ),
-                (1,
+                (_prr,
         (J_2_prr_zz, branch_1_prr, g_r0_x, g_r0_y, h_2_prr_x, h_2_prr_y, inv_uu_2_prr_t,
                     prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx, prr_base_frame_yy,
                     prr_base_point_x, prr_base_point_y, prr_link1_mass,
@@ -846,18 +955,18 @@ def _prepare(p):
         "inverse_kinematics": (
         (),
             (
-                (1,
+                (_rpr,
         (branch_1_rpr, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
                     rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
                     rpr_platform_point_y,),
                 ),
-                (1,
+                (_rrr,
         (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t, rho2_1_rrr_t,
                     rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
                     rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,),
                 ),
-                (1,
+                (_prr,
         (branch_1_prr, inv_uu_2_prr_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
                     prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
                     prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
@@ -868,12 +977,12 @@ def _prepare(p):
         "joint_rates": (
         (),
             (
-                (1,
+                (_rpr,
         (branch_1_rpr, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
                     rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
                     rpr_platform_point_y,),
                 ),
-                (1,
+                (_rrr,
         (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
                     inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
                     rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
@@ -881,7 +990,7 @@ def _prepare(p):
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
                     size_rrr,),
                 ),
-                (1,
+                (_prr,
         (branch_1_prr, inv_uu_2_prr_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
                     prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
                     prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
@@ -892,12 +1001,12 @@ def _prepare(p):
         "joint_accelerations": (
         (),
             (
-                (1,
+                (_rpr,
         (branch_1_rpr, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
                     rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
                     rpr_platform_point_y,),
                 ),
-                (1,
+                (_rrr,
         (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
                     inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
                     rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
@@ -905,7 +1014,7 @@ def _prepare(p):
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
                     size_rrr,),
                 ),
-                (1,
+                (_prr,
         (branch_1_prr, inv_uu_2_prr_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
                     prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
                     prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
@@ -916,13 +1025,13 @@ def _prepare(p):
         "legs": (
         (gravity_x, gravity_y,),
             (
-                (1,
+                (_rpr,
         (J_group_1_rpr_zz, branch_1_rpr, g_r0_x_3, g_r0_y_3, h_1_rpr_x, h_1_rpr_y, h_2_rpr_x,
                     h_2_rpr_y, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
                     rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_link2_mass,
                     rpr_platform_point_x, rpr_platform_point_y,),
                 ),
-                (1,
+                (_rrr,
         (J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x_2, g_r0_y_2,
                     h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
                     inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
@@ -931,7 +1040,7 @@ def _prepare(p):
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
                     size_rrr,),
                 ),
-                (1,
+                (_prr,
         (J_2_prr_zz, branch_1_prr, g_r0_x, g_r0_y, h_2_prr_x, h_2_prr_y, inv_uu_2_prr_t,
                     prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx, prr_base_frame_yy,
                     prr_base_point_x, prr_base_point_y, prr_link1_mass, prr_link2_mass,
@@ -943,13 +1052,13 @@ def _prepare(p):
         "potential": (
         (gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
-                (1,
+                (_rpr,
         (b_rpr_r0_x, b_rpr_r0_y, branch_1_rpr, g_r0_x_3, g_r0_y_3, h_1_rpr_x, h_1_rpr_y,
                     h_2_rpr_x, h_2_rpr_y, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
                     rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_link1_mass,
                     rpr_platform_point_x, rpr_platform_point_y,),
                 ),
-                (1,
+                (_rrr,
         (Kd_1_rrr_t_2, Kd_1_rrr_t_3, b_rrr_r0_x, b_rrr_r0_y, branch_1_rrr, g_r0_x_2, g_r0_y_2,
                     h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t,
                     rho2_1_rrr_t, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
@@ -957,7 +1066,7 @@ def _prepare(p):
                     rrr_link1_mass, rrr_platform_joint_offset_x, rrr_platform_point_x,
                     rrr_platform_point_y,),
                 ),
-                (1,
+                (_prr,
         (b_prr_r0_x, branch_1_prr, g_r0_x, g_r0_y, h_1_prr_x, h_1_prr_y, h_2_prr_x, h_2_prr_y,
                     inv_uu_2_prr_t, potential_t, prr_base_frame_xx, prr_base_frame_xy,
                     prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
@@ -969,19 +1078,19 @@ def _prepare(p):
         "condition": (
         (b_c_x, b_c_y, legs_size,),
             (
-                (1,
+                (_rpr,
         (branch_1_rpr, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
                     rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
                     rpr_platform_point_y,),
                 ),
-                (1,
+                (_rrr,
         (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_rho2_1_rrr_t_4,
                     inv_size_rrr, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
                     rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
                     rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
                     rrr_platform_point_x, rrr_platform_point_y, size_rrr,),
                 ),
-                (1,
+                (_prr,
         (branch_1_prr, inv_size_prr, inv_uu_2_prr_t, prr_base_frame_xx, prr_base_frame_xy,
                     prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
                     prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
@@ -1029,16 +1138,16 @@ class _Floats:
         """Shared values, and (leg, its values) for every leg of each loop."""
         return _constants(self.p, name)[:2]
 
-    def zeros(self, size):
-        return [0.0] * size
+    def zeros(self, name):
+        return [0.0] * math.prod(_SHAPES[name])
 
     def added(self, sums, leg, terms):
         """Sums over the legs so far."""
         return [a + b for a, b in zip(sums, terms)]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(shape)), np.nan) for shape in shapes]
+        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
         for k in range(self.states):
             try:
@@ -1048,7 +1157,7 @@ class _Floats:
             if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
                 for a, array in zip(found, arrays):
                     a[k] = array
-        return [a.T.reshape(*shape, self.states) for a, shape in zip(found, shapes)]
+        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
 
 
 class _Arrays:
@@ -1064,8 +1173,8 @@ class _Arrays:
         shared, _, columns = _constants(self.p, name)
         return shared, columns
 
-    def zeros(self, size):
-        return np.zeros((size, self.states))
+    def zeros(self, name):
+        return np.zeros((math.prod(_SHAPES[name]), self.states))
 
     def every(self, good):
         """Whether it holds for all legs."""
@@ -1076,7 +1185,7 @@ class _Arrays:
         shape = (legs.stop, self.states)
         return [np.add.reduce(np.broadcast_to(t, shape), axis=0) for t in terms]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
         ok, arrays = function(self, *vectors)
         for a in arrays:
@@ -1084,7 +1193,7 @@ class _Arrays:
         if not np.all(ok):
             for a in arrays:
                 a[:, ~ok] = np.nan
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
 
 class _Judged(_Arrays):
@@ -1094,12 +1203,12 @@ class _Judged(_Arrays):
         super().__init__(p, states)
         self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
         (valid, reached, clear), arrays = function(self, *vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
             self.failed[code] |= ~np.broadcast_to(good, self.states)
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -1436,9 +1545,9 @@ def _run_dynamics(m, X, V):
     t_dot_y = V_1
     omega_z = V_2
     ok = True
-    out_M = m.zeros(9)
-    out_Z = m.zeros(3)
-    out_H = m.zeros(9)
+    out_M = m.zeros("M")
+    out_Z = m.zeros("Z")
+    out_H = m.zeros("H")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
     h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
@@ -1539,9 +1648,9 @@ def _run_dynamics(m, X, V):
         Q_rpr_t_4, Q_rpr_t_5, Q_rpr_t_6, M_ta_t, M_ta_t_2, M_aa_t, U_rpr_in_base_x,
             U_rpr_in_base_y, Z_a_t,
         ))
-        out_H[[0][leg]] = axis_x_x
-        out_H[[3][leg]] = axis_x_y
-        out_H[[6][leg]] = H_a_2_rpr_z
+        out_H[_H_rpr[0][leg]] = axis_x_x
+        out_H[_H_rpr[1][leg]] = axis_x_y
+        out_H[_H_rpr[2][leg]] = H_a_2_rpr_z
     (
     total_rpr_xx, total_rpr_xy, total_rpr_yy, total_rpr_xz, total_rpr_yz, total_rpr_zz,
         total_rpr_x, total_rpr_y, total_rpr_z,
@@ -1717,9 +1826,9 @@ def _run_dynamics(m, X, V):
         Q_rrr_t_5, Q_rrr_t_6, Q_rrr_t_7, M_ta_t_3, M_ta_t_4, M_aa_t_2, U_rrr_in_base_x,
             U_rrr_in_base_y, Z_a_t_2,
         ))
-        out_H[[1][leg]] = -w_1_rrr_t
-        out_H[[4][leg]] = w_1_rrr_t_2
-        out_H[[7][leg]] = H_a_1_rrr_z
+        out_H[_H_rrr[0][leg]] = -w_1_rrr_t
+        out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
+        out_H[_H_rrr[2][leg]] = H_a_1_rrr_z
     (
     total_rrr_xx, total_rrr_xy, total_rrr_yy, total_rrr_xz, total_rrr_yz, total_rrr_zz,
         total_rrr_x, total_rrr_y, total_rrr_z,
@@ -1850,9 +1959,9 @@ def _run_dynamics(m, X, V):
         Q_prr_t_5, Q_prr_t_6, Q_prr_t_7, M_ta_t_5, M_ta_t_6, M_aa_t_3, U_prr_in_base_x,
             U_prr_in_base_y, Z_a_t_3,
         ))
-        out_H[[2][leg]] = w_1_prr_in_base_x
-        out_H[[5][leg]] = w_1_prr_in_base_y
-        out_H[[8][leg]] = H_a_1_prr_z
+        out_H[_H_prr[0][leg]] = w_1_prr_in_base_x
+        out_H[_H_prr[1][leg]] = w_1_prr_in_base_y
+        out_H[_H_prr[2][leg]] = H_a_1_prr_z
     (
     total_prr_xx, total_prr_xy, total_prr_yy, total_prr_xz, total_prr_yz, total_prr_zz,
         total_prr_x, total_prr_y, total_prr_z,
@@ -1902,7 +2011,7 @@ def _run_M(m, X):
     R_xx = cos(X_2)
     R_yx = sin(X_2)
     ok = True
-    out_M = m.zeros(9)
+    out_M = m.zeros("M")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
     h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
@@ -2165,7 +2274,7 @@ def _run_Z(m, X, V):
     t_dot_y = V_1
     omega_z = V_2
     ok = True
-    out_Z = m.zeros(3)
+    out_Z = m.zeros("Z")
     # (P1) centripetal tensor of the platform
     W_p_t = omega_z*omega_z
     # (M4) centripetal force and weight of the platform
@@ -2498,7 +2607,7 @@ def _run_H(m, X):
     R_xx = cos(X_2)
     R_yx = sin(X_2)
     ok = True
-    out_H = m.zeros(9)
+    out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
         branch_1_rpr, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
@@ -2527,9 +2636,9 @@ def _run_H(m, X):
         ok & m.every((abs(rho2_1_rpr) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr) >
             _TOLERANCE * 0.62))
         )
-        out_H[[0][leg]] = axis_x_x
-        out_H[[3][leg]] = axis_x_y
-        out_H[[6][leg]] = H_a_2_rpr_z
+        out_H[_H_rpr[0][leg]] = axis_x_x
+        out_H[_H_rpr[1][leg]] = axis_x_y
+        out_H[_H_rpr[2][leg]] = H_a_2_rpr_z
     for leg, k in legs[1]:
         (
         Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t, rho2_1_rrr_t,
@@ -2593,9 +2702,9 @@ def _run_H(m, X):
         ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
             0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
-        out_H[[1][leg]] = -w_1_rrr_t
-        out_H[[4][leg]] = w_1_rrr_t_2
-        out_H[[7][leg]] = H_a_1_rrr_z
+        out_H[_H_rrr[0][leg]] = -w_1_rrr_t
+        out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
+        out_H[_H_rrr[2][leg]] = H_a_1_rrr_z
     for leg, k in legs[2]:
         (
         branch_1_prr, inv_uu_2_prr_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
@@ -2633,9 +2742,9 @@ def _run_H(m, X):
         # (M10) moment of the column's unit force about the platform origin
         H_a_1_prr_z = q_prr_in_base_x*w_1_prr_in_base_y - q_prr_in_base_y*w_1_prr_in_base_x
         ok = ok & m.every((disc_1_prr >= 0.0) & (abs(-v_2_prr_t) > _TOLERANCE * size_prr))
-        out_H[[2][leg]] = w_1_prr_in_base_x
-        out_H[[5][leg]] = w_1_prr_in_base_y
-        out_H[[8][leg]] = H_a_1_prr_z
+        out_H[_H_prr[0][leg]] = w_1_prr_in_base_x
+        out_H[_H_prr[1][leg]] = w_1_prr_in_base_y
+        out_H[_H_prr[2][leg]] = H_a_1_prr_z
     return ok, (out_H,)
 
 
@@ -2669,8 +2778,8 @@ def _run_required(m, X, V, A):
     t_ddot_y = A_1
     alpha_z = A_2
     ok = True
-    out_required = m.zeros(3)
-    out_H = m.zeros(9)
+    out_required = m.zeros("required")
+    out_H = m.zeros("H")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
     h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
@@ -2762,9 +2871,9 @@ def _run_required(m, X, V, A):
         sums = m.added(sums, leg, (
         c_rpr_in_base_x, c_rpr_in_base_y, R_a_t,
         ))
-        out_H[[0][leg]] = axis_x_x
-        out_H[[3][leg]] = axis_x_y
-        out_H[[6][leg]] = H_a_2_rpr_z
+        out_H[_H_rpr[0][leg]] = axis_x_x
+        out_H[_H_rpr[1][leg]] = axis_x_y
+        out_H[_H_rpr[2][leg]] = H_a_2_rpr_z
     total_rpr_x, total_rpr_y, total_rpr_z = sums
     sums = [0.0] * 3
     for leg, k in legs[1]:
@@ -2912,9 +3021,9 @@ def _run_required(m, X, V, A):
         sums = m.added(sums, leg, (
         c_rrr_in_base_x, c_rrr_in_base_y, R_a_t_2,
         ))
-        out_H[[1][leg]] = -w_1_rrr_t
-        out_H[[4][leg]] = w_1_rrr_t_2
-        out_H[[7][leg]] = H_a_1_rrr_z
+        out_H[_H_rrr[0][leg]] = -w_1_rrr_t
+        out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
+        out_H[_H_rrr[2][leg]] = H_a_1_rrr_z
     total_rrr_x, total_rrr_y, total_rrr_z = sums
     sums = [0.0] * 3
     for leg, k in legs[2]:
@@ -3004,9 +3113,9 @@ def _run_required(m, X, V, A):
         sums = m.added(sums, leg, (
         c_prr_in_base_x, c_prr_in_base_y, R_a_t_3,
         ))
-        out_H[[2][leg]] = w_1_prr_in_base_x
-        out_H[[5][leg]] = w_1_prr_in_base_y
-        out_H[[8][leg]] = H_a_1_prr_z
+        out_H[_H_prr[0][leg]] = w_1_prr_in_base_x
+        out_H[_H_prr[1][leg]] = w_1_prr_in_base_y
+        out_H[_H_prr[2][leg]] = H_a_1_prr_z
     total_prr_x, total_prr_y, total_prr_z = sums
     # (E4) force that actuators and external wrench must give
     R_t_x = f_p_x - total_prr_x - total_rpr_x - total_rrr_x
@@ -3035,7 +3144,7 @@ def _run_inverse_kinematics(m, X):
     R_xx = cos(X_2)
     R_yx = sin(X_2)
     ok = True
-    out_q = m.zeros(6)
+    out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
         branch_1_rpr, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
@@ -3060,8 +3169,8 @@ def _run_inverse_kinematics(m, X):
         ok & m.every((abs(rho2_1_rpr) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr) >
             _TOLERANCE * 0.62))
         )
-        out_q[[0][leg]] = q_1_rpr
-        out_q[[1][leg]] = root_1_rpr
+        out_q[_q_rpr[0][leg]] = q_1_rpr
+        out_q[_q_rpr[1][leg]] = root_1_rpr
     for leg, k in legs[1]:
         (
         Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t, rho2_1_rrr_t,
@@ -3107,8 +3216,8 @@ def _run_inverse_kinematics(m, X):
         ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
             0.0))
         )
-        out_q[[2][leg]] = q_1_rrr
-        out_q[[3][leg]] = q_2_rrr
+        out_q[_q_rrr[0][leg]] = q_1_rrr
+        out_q[_q_rrr[1][leg]] = q_2_rrr
     for leg, k in legs[2]:
         (
         branch_1_prr, inv_uu_2_prr_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
@@ -3132,8 +3241,8 @@ def _run_inverse_kinematics(m, X):
             S_prr_y*prr_base_frame_yy), -inv_uu_2_prr_t*prr_platform_joint_offset_x*q_1_prr_t)
         )
         ok = ok & m.every((disc_1_prr >= 0.0))
-        out_q[[4][leg]] = q_1_prr
-        out_q[[5][leg]] = q_2_prr
+        out_q[_q_prr[0][leg]] = q_1_prr
+        out_q[_q_prr[1][leg]] = q_2_prr
     return ok, (out_q,)
 
 
@@ -3159,7 +3268,7 @@ def _run_joint_rates(m, X, V):
     t_dot_y = V_1
     omega_z = V_2
     ok = True
-    out_qd = m.zeros(6)
+    out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
         branch_1_rpr, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
@@ -3192,8 +3301,8 @@ def _run_joint_rates(m, X, V):
         ok & m.every((abs(rho2_1_rpr) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr) >
             _TOLERANCE * 0.62))
         )
-        out_qd[[0][leg]] = qd_1_rpr
-        out_qd[[1][leg]] = S_dot_rpr_tip_x
+        out_qd[_qd_rpr[0][leg]] = qd_1_rpr
+        out_qd[_qd_rpr[1][leg]] = S_dot_rpr_tip_x
     for leg, k in legs[1]:
         (
         Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
@@ -3267,8 +3376,8 @@ def _run_joint_rates(m, X, V):
         ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
             0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
-        out_qd[[2][leg]] = -qd_1_rrr
-        out_qd[[3][leg]] = qd_2_rrr
+        out_qd[_qd_rrr[0][leg]] = -qd_1_rrr
+        out_qd[_qd_rrr[1][leg]] = qd_2_rrr
     for leg, k in legs[2]:
         (
         branch_1_prr, inv_uu_2_prr_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
@@ -3300,8 +3409,8 @@ def _run_joint_rates(m, X, V):
             + S_prr_y*prr_base_frame_yy)
         )
         ok = ok & m.every((disc_1_prr >= 0.0) & (abs(-v_2_prr_t) > _TOLERANCE * size_prr))
-        out_qd[[4][leg]] = qd_2_prr_t
-        out_qd[[5][leg]] = -qd_2_prr
+        out_qd[_qd_prr[0][leg]] = qd_2_prr_t
+        out_qd[_qd_prr[1][leg]] = -qd_2_prr
     return ok, (out_qd,)
 
 
@@ -3334,7 +3443,7 @@ def _run_joint_accelerations(m, X, V, A):
     t_ddot_y = A_1
     alpha_z = A_2
     ok = True
-    out_qdd = m.zeros(6)
+    out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
         branch_1_rpr, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
@@ -3380,8 +3489,8 @@ def _run_joint_accelerations(m, X, V, A):
         ok & m.every((abs(rho2_1_rpr) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr) >
             _TOLERANCE * 0.62))
         )
-        out_qdd[[0][leg]] = qdd_1_rpr
-        out_qdd[[1][leg]] = rel_rpr_x
+        out_qdd[_qdd_rpr[0][leg]] = qdd_1_rpr
+        out_qdd[_qdd_rpr[1][leg]] = rel_rpr_x
     for leg, k in legs[1]:
         (
         Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
@@ -3484,8 +3593,8 @@ def _run_joint_accelerations(m, X, V, A):
         ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
             0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
-        out_qdd[[2][leg]] = -qdd_1_rrr
-        out_qdd[[3][leg]] = qdd_2_rrr
+        out_qdd[_qdd_rrr[0][leg]] = -qdd_1_rrr
+        out_qdd[_qdd_rrr[1][leg]] = qdd_2_rrr
     for leg, k in legs[2]:
         (
         branch_1_prr, inv_uu_2_prr_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
@@ -3544,8 +3653,8 @@ def _run_joint_accelerations(m, X, V, A):
             prr_platform_joint_offset_x*qdd_2_prr*s_2_prr
         )
         ok = ok & m.every((disc_1_prr >= 0.0) & (abs(-v_2_prr_t) > _TOLERANCE * size_prr))
-        out_qdd[[4][leg]] = -qdd_1_prr_t
-        out_qdd[[5][leg]] = -qdd_2_prr
+        out_qdd[_qdd_prr[0][leg]] = -qdd_1_prr_t
+        out_qdd[_qdd_prr[1][leg]] = -qdd_2_prr
     return ok, (out_qdd,)
 
 
@@ -3579,8 +3688,8 @@ def _run_legs(m, X, V, A):
     t_ddot_y = A_1
     alpha_z = A_2
     ok = True
-    out_leg_force = m.zeros(9)
-    out_drive = m.zeros(9)
+    out_leg_force = m.zeros("leg_force")
+    out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
         J_group_1_rpr_zz, branch_1_rpr, g_r0_x_3, g_r0_y_3, h_1_rpr_x, h_1_rpr_y, h_2_rpr_x,
@@ -3651,10 +3760,10 @@ def _run_legs(m, X, V, A):
         ok & m.every((abs(rho2_1_rpr) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr) >
             _TOLERANCE * 0.62))
         )
-        out_leg_force[[0][leg]] = c_true_rpr_in_base_x
-        out_leg_force[[1][leg]] = c_true_rpr_in_base_y
-        out_drive[[0][leg]] = axis_x_x
-        out_drive[[1][leg]] = axis_x_y
+        out_leg_force[_leg_force_rpr[0][leg]] = c_true_rpr_in_base_x
+        out_leg_force[_leg_force_rpr[1][leg]] = c_true_rpr_in_base_y
+        out_drive[_drive_rpr[0][leg]] = axis_x_x
+        out_drive[_drive_rpr[1][leg]] = axis_x_y
     for leg, k in legs[1]:
         (
         J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x_2, g_r0_y_2,
@@ -3800,10 +3909,10 @@ def _run_legs(m, X, V, A):
         ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
             0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
-        out_leg_force[[3][leg]] = c_true_rrr_in_base_x
-        out_leg_force[[4][leg]] = c_true_rrr_in_base_y
-        out_drive[[3][leg]] = -w_1_rrr_t
-        out_drive[[4][leg]] = w_1_rrr_t_2
+        out_leg_force[_leg_force_rrr[0][leg]] = c_true_rrr_in_base_x
+        out_leg_force[_leg_force_rrr[1][leg]] = c_true_rrr_in_base_y
+        out_drive[_drive_rrr[0][leg]] = -w_1_rrr_t
+        out_drive[_drive_rrr[1][leg]] = w_1_rrr_t_2
     for leg, k in legs[2]:
         (
         J_2_prr_zz, branch_1_prr, g_r0_x, g_r0_y, h_2_prr_x, h_2_prr_y, inv_uu_2_prr_t,
@@ -3892,10 +4001,10 @@ def _run_legs(m, X, V, A):
         axis_y_prr_axes2_in_base_y*c_true_prr_y - axis_y_prr_axes2_in_base_x*c_true_prr_x
         )
         ok = ok & m.every((disc_1_prr >= 0.0) & (abs(-v_2_prr_t_2) > _TOLERANCE * size_prr))
-        out_leg_force[[6][leg]] = c_true_prr_in_base_x
-        out_leg_force[[7][leg]] = c_true_prr_in_base_y
-        out_drive[[6][leg]] = w_1_prr_in_base_x
-        out_drive[[7][leg]] = w_1_prr_in_base_y
+        out_leg_force[_leg_force_prr[0][leg]] = c_true_prr_in_base_x
+        out_leg_force[_leg_force_prr[1][leg]] = c_true_prr_in_base_y
+        out_drive[_drive_prr[0][leg]] = w_1_prr_in_base_x
+        out_drive[_drive_prr[1][leg]] = w_1_prr_in_base_y
     return ok, (out_leg_force, out_drive,)
 
 
@@ -3915,7 +4024,7 @@ def _run_potential(m, X):
     R_xx = cos(X_2)
     R_yx = sin(X_2)
     ok = True
-    out_potential = m.zeros(1)
+    out_potential = m.zeros("potential")
     # (V1) potential energy
     potential_t_2 = (
     gravity_x*(R_xx*h_star_x + m_star*t_x - R_yx*h_star_y) + gravity_y*(R_xx*h_star_y +
@@ -4081,10 +4190,10 @@ def _run_condition(m, X):
     valid = True
     reached = True
     clear = True
-    out_H = m.zeros(9)
-    out_lengths = m.zeros(2)
-    out_pivots = m.zeros(3)
-    out_reach = m.zeros(3)
+    out_H = m.zeros("H")
+    out_lengths = m.zeros("lengths")
+    out_pivots = m.zeros("pivots")
+    out_reach = m.zeros("reach")
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
@@ -4128,10 +4237,10 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         spread_t_6,
         ))
-        out_H[[0][leg]] = axis_x_x
-        out_H[[3][leg]] = axis_x_y
-        out_H[[6][leg]] = H_a_2_rpr_z
-        out_pivots[[0][leg]] = least_pivots
+        out_H[_H_rpr[0][leg]] = axis_x_x
+        out_H[_H_rpr[1][leg]] = axis_x_y
+        out_H[_H_rpr[2][leg]] = H_a_2_rpr_z
+        out_pivots[_pivots_rpr[0][leg]] = least_pivots
     total_rpr, = sums
     sums = [0.0] * 1
     for leg, k in legs[1]:
@@ -4212,11 +4321,11 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         spread_t_9,
         ))
-        out_H[[1][leg]] = -w_1_rrr_t
-        out_H[[4][leg]] = w_1_rrr_t_2
-        out_H[[7][leg]] = H_a_1_rrr_z
-        out_pivots[[1][leg]] = least_pivots_2
-        out_reach[[1][leg]] = disc_1_rrr
+        out_H[_H_rrr[0][leg]] = -w_1_rrr_t
+        out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
+        out_H[_H_rrr[2][leg]] = H_a_1_rrr_z
+        out_pivots[_pivots_rrr[0][leg]] = least_pivots_2
+        out_reach[_reach_rrr[0][leg]] = disc_1_rrr
     total_rrr, = sums
     sums = [0.0] * 1
     for leg, k in legs[2]:
@@ -4268,11 +4377,11 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         spread_t_3,
         ))
-        out_H[[2][leg]] = w_1_prr_in_base_x
-        out_H[[5][leg]] = w_1_prr_in_base_y
-        out_H[[8][leg]] = H_a_1_prr_z
-        out_pivots[[2][leg]] = pivot
-        out_reach[[2][leg]] = disc_1_prr
+        out_H[_H_prr[0][leg]] = w_1_prr_in_base_x
+        out_H[_H_prr[1][leg]] = w_1_prr_in_base_y
+        out_H[_H_prr[2][leg]] = H_a_1_prr_z
+        out_pivots[_pivots_prr[0][leg]] = pivot
+        out_reach[_reach_prr[0][leg]] = disc_1_prr
     total_prr, = sums
     # (C2) rms distance of the platform points from their centroid
     spread = (
@@ -4288,44 +4397,42 @@ _DEFAULT = Parameters()
 
 
 def _steps_M(m, X):
-    M_of_M, = m.run(_run_M, ((3, 3),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
     return (M_of_M,)
 
 
 def _steps_Z(m, X, V):
-    Z_of_Z, = m.run(_run_Z, ((3,),), X, V)
+    Z_of_Z, = m.run(_run_Z, ("Z",), X, V)
     return (Z_of_Z,)
 
 
 def _steps_H(m, X):
-    H_of_H, = m.run(_run_H, ((3, 3),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 
 def _steps_inverse_kinematics(m, X):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((6,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     return (q_of_inverse_kinematics,)
 
 
 def _steps_joint_rates(m, X, V):
-    qd_of_joint_rates, = m.run(_run_joint_rates, ((6,),), X, V)
+    qd_of_joint_rates, = m.run(_run_joint_rates, ("qd",), X, V)
     return (qd_of_joint_rates,)
 
 
 def _steps_joint_accelerations(m, X, V, A):
-    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ((6,),), X, V, A)
+    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
     return (qdd_of_joint_accelerations,)
 
 
 def _steps_dynamics(m, X, V):
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((3, 3), (3,), (3, 3)), X, V)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
 
 
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
-    required_of_required, H_of_required = m.run(_run_required, ((3,), (3, 3)), X, V, A)
+    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     solve_3 = _solve(H_of_required, subtract_2)
@@ -4333,9 +4440,7 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((3, 3), (3,), (3, 3)), X, V)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
     extend_2 = wrench
     add_3 = times_1 + extend_2
@@ -4350,25 +4455,25 @@ def _steps_complete_acceleration(m, X, V, A, wrench):
 
 
 def _steps_leg_reactions(m, X, V, A, wrench):
-    required_of_required, H_of_required = m.run(_run_required, ((3,), (3, 3)), X, V, A)
+    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     solve_3 = _solve(H_of_required, subtract_2)
-    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ((3, 3), (3, 3)), X, V, A)
+    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
     add_forces_4 = _with_forces(leg_force_of_legs, solve_3, drive_of_legs, [0, 1, 2])
     return (add_forces_4,)
 
 
 def _steps_energy(m, X, V):
-    M_of_M, = m.run(_run_M, ((3, 3),), X)
-    potential_of_potential, = m.run(_run_potential, ((1,),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
+    potential_of_potential, = m.run(_run_potential, ("potential",), X)
     half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
     entry_2 = potential_of_potential[0]
     return (half_form_1, entry_2,)
 
 
 def _steps_null_space(m, X):
-    H_of_H, = m.run(_run_H, ((3, 3),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     null_basis_1 = _null_basis(H_of_H, 3)
     return (null_basis_1,)
 
@@ -4376,7 +4481,7 @@ def _steps_null_space(m, X):
 def _steps_condition(m, X, length):
     (
     H_of_condition, lengths_of_condition, pivots_of_condition, reach_of_condition,
-    ) = m.run(_run_condition, ((3, 3), (2,), (3,), (3,)), X)
+    ) = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
     choose_length_1 = _chosen_length(lengths_of_condition, length)
     divide_rows_2 = _rows_divided(H_of_condition, choose_length_1, [2])
     singular_values_3 = _singular_values(divide_rows_2)
@@ -4384,7 +4489,7 @@ def _steps_condition(m, X, length):
 
 
 def _steps_mismatch(m, X, q_actuated):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((6,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     take_1 = q_of_inverse_kinematics[[1, 2, 4]]
     subtract_2 = q_actuated - take_1
     wrap_turns_3 = _wrapped(subtract_2, [1])
@@ -4392,7 +4497,7 @@ def _steps_mismatch(m, X, q_actuated):
 
 
 def _steps_slope(m, X):
-    H_of_H, = m.run(_run_H, ((3, 3),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 

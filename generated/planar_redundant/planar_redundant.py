@@ -65,6 +65,104 @@ NJ = 7
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
 
+_SHAPES = {  # of the arrays that functions give
+    "M": (4, 4),
+    "Z": (4,),
+    "H": (4, 4),
+    "required": (4,),
+    "q": (7,),
+    "qd": (7,),
+    "qdd": (7,),
+    "leg_force": (3, 3),
+    "drive": (4, 3),
+    "potential": (1,),
+    "lengths": (2,),
+    "pivots": (3,),
+    "reach": (3,),
+}
+# Where the entries of a leg type's legs stand in these arrays, row by row.
+_Z_prrr = (
+    [3],
+)
+_M_prrr = (
+    [12],
+    [3],
+    [13],
+    [7],
+    [14],
+    [11],
+    [15],
+)
+_H_prrr = (
+    [12],
+    [1],
+    [5],
+    [9],
+    [13],
+)
+_H_rrr = (
+    [2, 3],
+    [6, 7],
+    [10, 11],
+)
+_required_prrr = (
+    [3],
+)
+_q_prrr = (
+    [0],
+    [1],
+    [2],
+)
+_q_rrr = (
+    [3, 5],
+    [4, 6],
+)
+_qd_prrr = (
+    [0],
+    [1],
+    [2],
+)
+_qd_rrr = (
+    [3, 5],
+    [4, 6],
+)
+_qdd_prrr = (
+    [0],
+    [1],
+    [2],
+)
+_qdd_rrr = (
+    [3, 5],
+    [4, 6],
+)
+_leg_force_prrr = (
+    [0],
+    [1],
+)
+_drive_prrr = (
+    [3],
+    [4],
+)
+_leg_force_rrr = (
+    [3, 6],
+    [4, 7],
+)
+_drive_rrr = (
+    [6, 9],
+    [7, 10],
+)
+_pivots_prrr = (
+    [0],
+)
+_reach_prrr = (
+    [0],
+)
+_pivots_rrr = (
+    [1, 2],
+)
+_reach_rrr = (
+    [1, 2],
+)
 _DRIVEN_JOINTS = (0, 1, 3, 5)
 
 _DEFAULTS = {
@@ -443,6 +541,8 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _prrr = 1
+    _rrr = 2
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     platform_mass = p.platform_mass
@@ -572,14 +672,14 @@ def _prepare(p):
     inv_rho2_2_prrr_t_4 = 1.0/rho2_2_prrr_t
     # (prrr-V5) reciprocal vector 1
     inv_size_prrr = 1.0/size_prrr
-    total_prrr = np.sum(np.broadcast_to(prrr_link3_mass, 1))
-    total_prrr_x = np.sum(np.broadcast_to(h_star_t_3, 1))
-    total_prrr_y = np.sum(np.broadcast_to(h_star_t_4, 1))
-    total_prrr_xx = np.sum(np.broadcast_to(J_star_t_7, 1))
-    total_prrr_zz = np.sum(np.broadcast_to(J_star_t_8, 1))
-    total_prrr_x_2 = np.sum(np.broadcast_to(prrr_platform_point_x, 1))
-    total_prrr_y_2 = np.sum(np.broadcast_to(prrr_platform_point_y, 1))
-    total_prrr_2 = np.sum(np.broadcast_to(size_prrr_t, 1))
+    total_prrr = np.sum(np.broadcast_to(prrr_link3_mass, _prrr))
+    total_prrr_x = np.sum(np.broadcast_to(h_star_t_3, _prrr))
+    total_prrr_y = np.sum(np.broadcast_to(h_star_t_4, _prrr))
+    total_prrr_xx = np.sum(np.broadcast_to(J_star_t_7, _prrr))
+    total_prrr_zz = np.sum(np.broadcast_to(J_star_t_8, _prrr))
+    total_prrr_x_2 = np.sum(np.broadcast_to(prrr_platform_point_x, _prrr))
+    total_prrr_y_2 = np.sum(np.broadcast_to(prrr_platform_point_y, _prrr))
+    total_prrr_2 = np.sum(np.broadcast_to(size_prrr_t, _prrr))
     # (rrr-K17) squared length, across the axis, of the direction fixed in link 2
     uu_2_rrr_t = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x
     # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
@@ -645,14 +745,14 @@ def _prepare(p):
     inv_rho2_1_rrr_t_4 = 1.0/rho2_1_rrr_t
     # (rrr-V5) reciprocal vector 1
     inv_size_rrr = 1.0/size_rrr
-    total_rrr = np.sum(np.broadcast_to(rrr_link2_mass, 2))
-    total_rrr_x = np.sum(np.broadcast_to(h_star_t_5, 2))
-    total_rrr_y = np.sum(np.broadcast_to(h_star_t_6, 2))
-    total_rrr_xx = np.sum(np.broadcast_to(J_star_t_11, 2))
-    total_rrr_zz = np.sum(np.broadcast_to(J_star_t_12, 2))
-    total_rrr_x_2 = np.sum(np.broadcast_to(rrr_platform_point_x, 2))
-    total_rrr_y_2 = np.sum(np.broadcast_to(rrr_platform_point_y, 2))
-    total_rrr_2 = np.sum(np.broadcast_to(size_rrr_t, 2))
+    total_rrr = np.sum(np.broadcast_to(rrr_link2_mass, _rrr))
+    total_rrr_x = np.sum(np.broadcast_to(h_star_t_5, _rrr))
+    total_rrr_y = np.sum(np.broadcast_to(h_star_t_6, _rrr))
+    total_rrr_xx = np.sum(np.broadcast_to(J_star_t_11, _rrr))
+    total_rrr_zz = np.sum(np.broadcast_to(J_star_t_12, _rrr))
+    total_rrr_x_2 = np.sum(np.broadcast_to(rrr_platform_point_x, _rrr))
+    total_rrr_y_2 = np.sum(np.broadcast_to(rrr_platform_point_y, _rrr))
+    total_rrr_2 = np.sum(np.broadcast_to(size_rrr_t, _rrr))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_prrr + total_rrr
     # (L2) first moment about the platform origin
@@ -675,7 +775,7 @@ def _prepare(p):
         "dynamics": (
         (J_star_t_14, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
-                (1,
+                (_prrr,
         (J_2_prrr_zz, J_3_prrr_zz, Jc_2_prrr_zz, Kd_2_prrr_t_2, Kd_2_prrr_t_3, P_c1_prrr_t,
                     branch_2_prrr, d_G_prrr_t, d_Gamma_2_prrr_t, d_Gamma_2_prrr_y, d_c_prrr_yy,
                     d_phi_3_prrr_t, f_1_prrr_o_x, g_r0_x, g_r0_y, h_2_prrr_x, h_2_prrr_y,
@@ -685,7 +785,7 @@ def _prepare(p):
                     prrr_joint3_offset_x, prrr_link2_mass, prrr_platform_joint_offset_x,
                     prrr_platform_point_x, prrr_platform_point_y, rho2_2_prrr_t, size_prrr,),
                 ),
-                (2,
+                (_rrr,
         (J_1_rrr_zz, J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr,
                     d_Gamma_1_rrr_t, d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, g_r0_x_2,
                     g_r0_y_2, h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
@@ -700,7 +800,7 @@ def _prepare(p):
         "M": (
         (J_star_t_14, h_star_x, h_star_y, m_star,),
             (
-                (1,
+                (_prrr,
         (J_3_prrr_zz, Jc_2_prrr_zz, Kd_2_prrr_t_2, Kd_2_prrr_t_3, P_c1_prrr_t, branch_2_prrr,
                     d_G_prrr_t, d_Gamma_2_prrr_t, d_Gamma_2_prrr_y, d_c_prrr_yy, d_phi_3_prrr_t,
                     h_2_prrr_x, h_2_prrr_y, h_3_prrr_y, inv_Kd_2_prrr_t,
@@ -709,7 +809,7 @@ def _prepare(p):
                     prrr_base_point_y, prrr_joint3_offset_x, prrr_platform_joint_offset_x,
                     prrr_platform_point_x, prrr_platform_point_y, rho2_2_prrr_t, size_prrr,),
                 ),
-                (2,
+                (_rrr,
         (J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, d_Gamma_1_rrr_t,
                     d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, h_2_rrr_y, inv_Kd_1_rrr_t_5,
                     inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
@@ -723,7 +823,7 @@ def _prepare(p):
         "Z": (
         (Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y,),
             (
-                (1,
+                (_prrr,
         (J_2_prrr_zz, J_3_prrr_zz, Kd_2_prrr_t_2, Kd_2_prrr_t_3, branch_2_prrr, f_1_prrr_o_x,
                     g_r0_x, g_r0_y, h_2_prrr_x, h_2_prrr_y, h_3_prrr_x, h_3_prrr_y,
                     inv_Kd_2_prrr_t, inv_prrr_platform_joint_offset_x, inv_uu_3_prrr_t,
@@ -732,7 +832,7 @@ def _prepare(p):
                     prrr_joint3_offset_x, prrr_link2_mass, prrr_platform_joint_offset_x,
                     prrr_platform_point_x, prrr_platform_point_y, rho2_2_prrr_t, size_prrr,),
                 ),
-                (2,
+                (_rrr,
         (J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x_2, g_r0_y_2,
                     h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
                     inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
@@ -746,14 +846,14 @@ def _prepare(p):
         "H": (
         (),
             (
-                (1,
+                (_prrr,
         (Kd_2_prrr_t_2, Kd_2_prrr_t_3, branch_2_prrr, inv_Kd_2_prrr_t, inv_uu_3_prrr_t,
                     prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx,
                     prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y,
                     prrr_joint3_offset_x, prrr_platform_joint_offset_x, prrr_platform_point_x,
                     prrr_platform_point_y, rho2_2_prrr_t, size_prrr,),
                 ),
-                (2,
+                (_rrr,
         (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t, rho2_1_rrr_t,
                     rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
                     rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
@@ -765,7 +865,7 @@ def _prepare(p):
         "required": (
         (J_star_zz, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
-                (1,
+                (_prrr,
         (J_2_prrr_zz, J_3_prrr_zz, Kd_2_prrr_t_2, Kd_2_prrr_t_3, branch_2_prrr, g_r0_x, g_r0_y,
                     h_2_prrr_x, h_2_prrr_y, h_3_prrr_x, h_3_prrr_y, inv_Kd_2_prrr_t,
                     inv_prrr_platform_joint_offset_x, inv_uu_3_prrr_t, prrr_base_frame_xx,
@@ -774,7 +874,7 @@ def _prepare(p):
                     prrr_platform_joint_offset_x, prrr_platform_point_x, prrr_platform_point_y,
                     rho2_2_prrr_t, size_prrr,),
                 ),
-                (2,
+                (_rrr,
         (J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x_2, g_r0_y_2,
                     h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
                     inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
@@ -788,14 +888,14 @@ def _prepare(p):
         "inverse_kinematics": (
         (),
             (
-                (1,
+                (_prrr,
         (Kd_2_prrr_t_2, Kd_2_prrr_t_3, branch_2_prrr, inv_Kd_2_prrr_t, inv_uu_3_prrr_t,
                     prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx,
                     prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y,
                     prrr_joint3_offset_x, prrr_platform_joint_offset_x, prrr_platform_point_x,
                     prrr_platform_point_y, rho2_2_prrr_t,),
                 ),
-                (2,
+                (_rrr,
         (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t, rho2_1_rrr_t,
                     rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
                     rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
@@ -806,14 +906,14 @@ def _prepare(p):
         "joint_rates": (
         (),
             (
-                (1,
+                (_prrr,
         (Kd_2_prrr_t_2, Kd_2_prrr_t_3, branch_2_prrr, inv_Kd_2_prrr_t,
                     inv_prrr_platform_joint_offset_x, inv_uu_3_prrr_t, prrr_base_frame_xx,
                     prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x,
                     prrr_base_point_y, prrr_joint3_offset_x, prrr_platform_joint_offset_x,
                     prrr_platform_point_x, prrr_platform_point_y, rho2_2_prrr_t, size_prrr,),
                 ),
-                (2,
+                (_rrr,
         (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
                     inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
                     rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
@@ -826,14 +926,14 @@ def _prepare(p):
         "joint_accelerations": (
         (),
             (
-                (1,
+                (_prrr,
         (Kd_2_prrr_t_2, Kd_2_prrr_t_3, branch_2_prrr, inv_Kd_2_prrr_t,
                     inv_prrr_platform_joint_offset_x, inv_uu_3_prrr_t, prrr_base_frame_xx,
                     prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x,
                     prrr_base_point_y, prrr_joint3_offset_x, prrr_platform_joint_offset_x,
                     prrr_platform_point_x, prrr_platform_point_y, rho2_2_prrr_t, size_prrr,),
                 ),
-                (2,
+                (_rrr,
         (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
                     inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
                     rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
@@ -846,7 +946,7 @@ def _prepare(p):
         "legs": (
         (gravity_x, gravity_y,),
             (
-                (1,
+                (_prrr,
         (J_2_prrr_zz, J_3_prrr_zz, Kd_2_prrr_t_2, Kd_2_prrr_t_3, branch_2_prrr, g_r0_x, g_r0_y,
                     h_2_prrr_x, h_2_prrr_y, h_3_prrr_x, h_3_prrr_y, inv_Kd_2_prrr_t,
                     inv_prrr_platform_joint_offset_x, inv_uu_3_prrr_t, prrr_base_frame_xx,
@@ -855,7 +955,7 @@ def _prepare(p):
                     prrr_platform_joint_offset_x, prrr_platform_point_x, prrr_platform_point_y,
                     rho2_2_prrr_t, size_prrr,),
                 ),
-                (2,
+                (_rrr,
         (J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x_2, g_r0_y_2,
                     h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
                     inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
@@ -869,7 +969,7 @@ def _prepare(p):
         "potential": (
         (gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
-                (1,
+                (_prrr,
         (Kd_2_prrr_t_2, Kd_2_prrr_t_3, b_prrr_r0_x, branch_2_prrr, g_r0_x, g_r0_y, h_1_prrr_x,
                     h_1_prrr_y, h_2_prrr_x, h_2_prrr_y, h_3_prrr_x, h_3_prrr_y, inv_Kd_2_prrr_t,
                     inv_uu_3_prrr_t, potential_t, potential_t_2, prrr_base_frame_xx,
@@ -878,7 +978,7 @@ def _prepare(p):
                     prrr_platform_joint_offset_x, prrr_platform_point_x, prrr_platform_point_y,
                     rho2_2_prrr_t,),
                 ),
-                (2,
+                (_rrr,
         (Kd_1_rrr_t_2, Kd_1_rrr_t_3, b_rrr_r0_x, b_rrr_r0_y, branch_1_rrr, g_r0_x_2, g_r0_y_2,
                     h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t,
                     rho2_1_rrr_t, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
@@ -891,14 +991,14 @@ def _prepare(p):
         "condition": (
         (b_c_x, b_c_y, legs_size,),
             (
-                (1,
+                (_prrr,
         (Kd_2_prrr_t_2, Kd_2_prrr_t_3, branch_2_prrr, inv_Kd_2_prrr_t, inv_rho2_2_prrr_t_4,
                     inv_size_prrr, inv_uu_3_prrr_t, prrr_base_frame_xx, prrr_base_frame_xy,
                     prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y,
                     prrr_joint3_offset_x, prrr_platform_joint_offset_x, prrr_platform_point_x,
                     prrr_platform_point_y, rho2_2_prrr_t, size_prrr,),
                 ),
-                (2,
+                (_rrr,
         (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_rho2_1_rrr_t_4,
                     inv_size_rrr, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
                     rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
@@ -947,16 +1047,16 @@ class _Floats:
         """Shared values, and (leg, its values) for every leg of each loop."""
         return _constants(self.p, name)[:2]
 
-    def zeros(self, size):
-        return [0.0] * size
+    def zeros(self, name):
+        return [0.0] * math.prod(_SHAPES[name])
 
     def added(self, sums, leg, terms):
         """Sums over the legs so far."""
         return [a + b for a, b in zip(sums, terms)]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(shape)), np.nan) for shape in shapes]
+        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
         for k in range(self.states):
             try:
@@ -966,7 +1066,7 @@ class _Floats:
             if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
                 for a, array in zip(found, arrays):
                     a[k] = array
-        return [a.T.reshape(*shape, self.states) for a, shape in zip(found, shapes)]
+        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
 
 
 class _Arrays:
@@ -982,8 +1082,8 @@ class _Arrays:
         shared, _, columns = _constants(self.p, name)
         return shared, columns
 
-    def zeros(self, size):
-        return np.zeros((size, self.states))
+    def zeros(self, name):
+        return np.zeros((math.prod(_SHAPES[name]), self.states))
 
     def every(self, good):
         """Whether it holds for all legs."""
@@ -994,7 +1094,7 @@ class _Arrays:
         shape = (legs.stop, self.states)
         return [np.add.reduce(np.broadcast_to(t, shape), axis=0) for t in terms]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
         ok, arrays = function(self, *vectors)
         for a in arrays:
@@ -1002,7 +1102,7 @@ class _Arrays:
         if not np.all(ok):
             for a in arrays:
                 a[:, ~ok] = np.nan
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
 
 class _Judged(_Arrays):
@@ -1012,12 +1112,12 @@ class _Judged(_Arrays):
         super().__init__(p, states)
         self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
         (valid, reached, clear), arrays = function(self, *vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
             self.failed[code] |= ~np.broadcast_to(good, self.states)
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -1359,9 +1459,9 @@ def _run_dynamics(m, X, V):
     t_dot_y = V_1
     omega_z = V_2
     ok = True
-    out_M = m.zeros(16)
-    out_Z = m.zeros(4)
-    out_H = m.zeros(16)
+    out_M = m.zeros("M")
+    out_Z = m.zeros("Z")
+    out_H = m.zeros("H")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
     h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
@@ -1601,19 +1701,19 @@ def _run_dynamics(m, X, V):
         Q_prrr_t_5, Q_prrr_t_6, Q_prrr_t_7, M_ta_t, M_ta_t_2, M_aa_t, U_prrr_in_base_x,
             U_prrr_in_base_y, Z_a_t,
         ))
-        out_Z[[3][leg]] = P_1_prrr_o
-        out_M[[12][leg]] = d_P_1_prrr_in_base_x
-        out_M[[3][leg]] = d_P_1_prrr_in_base_x
-        out_M[[13][leg]] = d_P_1_prrr_in_base_y
-        out_M[[7][leg]] = d_P_1_prrr_in_base_y
-        out_M[[14][leg]] = M_ya_1_prrr_z
-        out_M[[11][leg]] = M_ya_1_prrr_z
-        out_M[[15][leg]] = d0_P_1_prrr
-        out_H[[12][leg]] = 1.0
-        out_H[[1][leg]] = -w_2_prrr_t
-        out_H[[5][leg]] = w_2_prrr_t_2
-        out_H[[9][leg]] = H_a_2_prrr_z
-        out_H[[13][leg]] = d1_qdd_2_prrr
+        out_Z[_Z_prrr[0][leg]] = P_1_prrr_o
+        out_M[_M_prrr[0][leg]] = d_P_1_prrr_in_base_x
+        out_M[_M_prrr[1][leg]] = d_P_1_prrr_in_base_x
+        out_M[_M_prrr[2][leg]] = d_P_1_prrr_in_base_y
+        out_M[_M_prrr[3][leg]] = d_P_1_prrr_in_base_y
+        out_M[_M_prrr[4][leg]] = M_ya_1_prrr_z
+        out_M[_M_prrr[5][leg]] = M_ya_1_prrr_z
+        out_M[_M_prrr[6][leg]] = d0_P_1_prrr
+        out_H[_H_prrr[0][leg]] = 1.0
+        out_H[_H_prrr[1][leg]] = -w_2_prrr_t
+        out_H[_H_prrr[2][leg]] = w_2_prrr_t_2
+        out_H[_H_prrr[3][leg]] = H_a_2_prrr_z
+        out_H[_H_prrr[4][leg]] = d1_qdd_2_prrr
     (
     total_prrr_xx, total_prrr_xy, total_prrr_yy, total_prrr_xz, total_prrr_yz, total_prrr_zz,
         total_prrr_x, total_prrr_y, total_prrr_z,
@@ -1789,9 +1889,9 @@ def _run_dynamics(m, X, V):
         Q_rrr_t_5, Q_rrr_t_6, Q_rrr_t_7, M_ta_t_3, M_ta_t_4, M_aa_t_2, U_rrr_in_base_x,
             U_rrr_in_base_y, Z_a_t_2,
         ))
-        out_H[[2, 3][leg]] = -w_1_rrr_t
-        out_H[[6, 7][leg]] = w_1_rrr_t_2
-        out_H[[10, 11][leg]] = H_a_1_rrr_z
+        out_H[_H_rrr[0][leg]] = -w_1_rrr_t
+        out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
+        out_H[_H_rrr[2][leg]] = H_a_1_rrr_z
     (
     total_rrr_xx, total_rrr_xy, total_rrr_yy, total_rrr_xz, total_rrr_yz, total_rrr_zz,
         total_rrr_x, total_rrr_y, total_rrr_z,
@@ -1841,7 +1941,7 @@ def _run_M(m, X):
     R_xx = cos(X_2)
     R_yx = sin(X_2)
     ok = True
-    out_M = m.zeros(16)
+    out_M = m.zeros("M")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
     h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
@@ -1982,13 +2082,13 @@ def _run_M(m, X):
         sums = m.added(sums, leg, (
         Q_prrr_t_5, Q_prrr_t_6, Q_prrr_t_7, M_ta_t, M_ta_t_2, M_aa_t,
         ))
-        out_M[[12][leg]] = d_P_1_prrr_in_base_x
-        out_M[[3][leg]] = d_P_1_prrr_in_base_x
-        out_M[[13][leg]] = d_P_1_prrr_in_base_y
-        out_M[[7][leg]] = d_P_1_prrr_in_base_y
-        out_M[[14][leg]] = M_ya_1_prrr_z
-        out_M[[11][leg]] = M_ya_1_prrr_z
-        out_M[[15][leg]] = d0_P_1_prrr
+        out_M[_M_prrr[0][leg]] = d_P_1_prrr_in_base_x
+        out_M[_M_prrr[1][leg]] = d_P_1_prrr_in_base_x
+        out_M[_M_prrr[2][leg]] = d_P_1_prrr_in_base_y
+        out_M[_M_prrr[3][leg]] = d_P_1_prrr_in_base_y
+        out_M[_M_prrr[4][leg]] = M_ya_1_prrr_z
+        out_M[_M_prrr[5][leg]] = M_ya_1_prrr_z
+        out_M[_M_prrr[6][leg]] = d0_P_1_prrr
     (
     total_prrr_xx, total_prrr_xy, total_prrr_yy, total_prrr_xz, total_prrr_yz, total_prrr_zz,
     ) = sums
@@ -2129,7 +2229,7 @@ def _run_Z(m, X, V):
     t_dot_y = V_1
     omega_z = V_2
     ok = True
-    out_Z = m.zeros(4)
+    out_Z = m.zeros("Z")
     # (P1) centripetal tensor of the platform
     W_p_t = omega_z*omega_z
     # (M4) centripetal force and weight of the platform
@@ -2290,7 +2390,7 @@ def _run_Z(m, X, V):
         sums = m.added(sums, leg, (
         U_prrr_in_base_x, U_prrr_in_base_y, Z_a_t,
         ))
-        out_Z[[3][leg]] = P_1_prrr_o
+        out_Z[_Z_prrr[0][leg]] = P_1_prrr_o
     total_prrr_x, total_prrr_y, total_prrr_z = sums
     sums = [0.0] * 3
     for leg, k in legs[1]:
@@ -2458,7 +2558,7 @@ def _run_H(m, X):
     R_xx = cos(X_2)
     R_yx = sin(X_2)
     ok = True
-    out_H = m.zeros(16)
+    out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
         Kd_2_prrr_t_2, Kd_2_prrr_t_3, branch_2_prrr, inv_Kd_2_prrr_t, inv_uu_3_prrr_t,
@@ -2526,11 +2626,11 @@ def _run_H(m, X):
         ok & m.every((abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) & (disc_2_prrr
             >= 0.0) & (abs(-r_2_prrr_r0_y) > _TOLERANCE * size_prrr))
         )
-        out_H[[12][leg]] = 1.0
-        out_H[[1][leg]] = -w_2_prrr_t
-        out_H[[5][leg]] = w_2_prrr_t_2
-        out_H[[9][leg]] = H_a_2_prrr_z
-        out_H[[13][leg]] = d1_qdd_2_prrr
+        out_H[_H_prrr[0][leg]] = 1.0
+        out_H[_H_prrr[1][leg]] = -w_2_prrr_t
+        out_H[_H_prrr[2][leg]] = w_2_prrr_t_2
+        out_H[_H_prrr[3][leg]] = H_a_2_prrr_z
+        out_H[_H_prrr[4][leg]] = d1_qdd_2_prrr
     for leg, k in legs[1]:
         (
         Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t, rho2_1_rrr_t,
@@ -2594,9 +2694,9 @@ def _run_H(m, X):
         ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
             0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
-        out_H[[2, 3][leg]] = -w_1_rrr_t
-        out_H[[6, 7][leg]] = w_1_rrr_t_2
-        out_H[[10, 11][leg]] = H_a_1_rrr_z
+        out_H[_H_rrr[0][leg]] = -w_1_rrr_t
+        out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
+        out_H[_H_rrr[2][leg]] = H_a_1_rrr_z
     return ok, (out_H,)
 
 
@@ -2630,8 +2730,8 @@ def _run_required(m, X, V, A):
     t_ddot_y = A_1
     alpha_z = A_2
     ok = True
-    out_required = m.zeros(4)
-    out_H = m.zeros(16)
+    out_required = m.zeros("required")
+    out_H = m.zeros("H")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
     h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
@@ -2818,12 +2918,12 @@ def _run_required(m, X, V, A):
         sums = m.added(sums, leg, (
         c_prrr_in_base_x, c_prrr_in_base_y, R_a_t,
         ))
-        out_required[[3][leg]] = P_1_prrr
-        out_H[[12][leg]] = 1.0
-        out_H[[1][leg]] = -w_2_prrr_t
-        out_H[[5][leg]] = w_2_prrr_t_2
-        out_H[[9][leg]] = H_a_2_prrr_z
-        out_H[[13][leg]] = d1_qdd_2_prrr
+        out_required[_required_prrr[0][leg]] = P_1_prrr
+        out_H[_H_prrr[0][leg]] = 1.0
+        out_H[_H_prrr[1][leg]] = -w_2_prrr_t
+        out_H[_H_prrr[2][leg]] = w_2_prrr_t_2
+        out_H[_H_prrr[3][leg]] = H_a_2_prrr_z
+        out_H[_H_prrr[4][leg]] = d1_qdd_2_prrr
     total_prrr_x, total_prrr_y, total_prrr_z = sums
     sums = [0.0] * 3
     for leg, k in legs[1]:
@@ -2971,9 +3071,9 @@ def _run_required(m, X, V, A):
         sums = m.added(sums, leg, (
         c_rrr_in_base_x, c_rrr_in_base_y, R_a_t_2,
         ))
-        out_H[[2, 3][leg]] = -w_1_rrr_t
-        out_H[[6, 7][leg]] = w_1_rrr_t_2
-        out_H[[10, 11][leg]] = H_a_1_rrr_z
+        out_H[_H_rrr[0][leg]] = -w_1_rrr_t
+        out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
+        out_H[_H_rrr[2][leg]] = H_a_1_rrr_z
     total_rrr_x, total_rrr_y, total_rrr_z = sums
     # (E4) force that actuators and external wrench must give
     R_t_x = f_p_x - total_prrr_x - total_rrr_x
@@ -3002,7 +3102,7 @@ def _run_inverse_kinematics(m, X):
     R_xx = cos(X_2)
     R_yx = sin(X_2)
     ok = True
-    out_q = m.zeros(7)
+    out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
         Kd_2_prrr_t_2, Kd_2_prrr_t_3, branch_2_prrr, inv_Kd_2_prrr_t, inv_uu_3_prrr_t,
@@ -3053,9 +3153,9 @@ def _run_inverse_kinematics(m, X):
         ok & m.every((abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) & (disc_2_prrr
             >= 0.0))
         )
-        out_q[[0][leg]] = y_1_extra_prrr
-        out_q[[1][leg]] = q_2_prrr
-        out_q[[2][leg]] = q_3_prrr
+        out_q[_q_prrr[0][leg]] = y_1_extra_prrr
+        out_q[_q_prrr[1][leg]] = q_2_prrr
+        out_q[_q_prrr[2][leg]] = q_3_prrr
     for leg, k in legs[1]:
         (
         Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t, rho2_1_rrr_t,
@@ -3101,8 +3201,8 @@ def _run_inverse_kinematics(m, X):
         ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
             0.0))
         )
-        out_q[[3, 5][leg]] = q_1_rrr
-        out_q[[4, 6][leg]] = q_2_rrr
+        out_q[_q_rrr[0][leg]] = q_1_rrr
+        out_q[_q_rrr[1][leg]] = q_2_rrr
     return ok, (out_q,)
 
 
@@ -3128,7 +3228,7 @@ def _run_joint_rates(m, X, V):
     t_dot_y = V_1
     omega_z = V_2
     ok = True
-    out_qd = m.zeros(7)
+    out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
         Kd_2_prrr_t_2, Kd_2_prrr_t_3, branch_2_prrr, inv_Kd_2_prrr_t,
@@ -3206,9 +3306,9 @@ def _run_joint_rates(m, X, V):
         ok & m.every((abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) & (disc_2_prrr
             >= 0.0) & (abs(-r_2_prrr_r0_y) > _TOLERANCE * size_prrr))
         )
-        out_qd[[0][leg]] = yd_1_prrr
-        out_qd[[1][leg]] = -qd_2_prrr
-        out_qd[[2][leg]] = qd_3_prrr
+        out_qd[_qd_prrr[0][leg]] = yd_1_prrr
+        out_qd[_qd_prrr[1][leg]] = -qd_2_prrr
+        out_qd[_qd_prrr[2][leg]] = qd_3_prrr
     for leg, k in legs[1]:
         (
         Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
@@ -3282,8 +3382,8 @@ def _run_joint_rates(m, X, V):
         ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
             0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
-        out_qd[[3, 5][leg]] = -qd_1_rrr
-        out_qd[[4, 6][leg]] = qd_2_rrr
+        out_qd[_qd_rrr[0][leg]] = -qd_1_rrr
+        out_qd[_qd_rrr[1][leg]] = qd_2_rrr
     return ok, (out_qd,)
 
 
@@ -3316,7 +3416,7 @@ def _run_joint_accelerations(m, X, V, A):
     t_ddot_y = A_1
     alpha_z = A_2
     ok = True
-    out_qdd = m.zeros(7)
+    out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
         Kd_2_prrr_t_2, Kd_2_prrr_t_3, branch_2_prrr, inv_Kd_2_prrr_t,
@@ -3424,9 +3524,9 @@ def _run_joint_accelerations(m, X, V, A):
         ok & m.every((abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) & (disc_2_prrr
             >= 0.0) & (abs(-r_2_prrr_r0_y) > _TOLERANCE * size_prrr))
         )
-        out_qdd[[0][leg]] = ydd_1_prrr
-        out_qdd[[1][leg]] = -qdd_2_prrr
-        out_qdd[[2][leg]] = qdd_3_prrr
+        out_qdd[_qdd_prrr[0][leg]] = ydd_1_prrr
+        out_qdd[_qdd_prrr[1][leg]] = -qdd_2_prrr
+        out_qdd[_qdd_prrr[2][leg]] = qdd_3_prrr
     for leg, k in legs[1]:
         (
         Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
@@ -3529,8 +3629,8 @@ def _run_joint_accelerations(m, X, V, A):
         ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
             0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
-        out_qdd[[3, 5][leg]] = -qdd_1_rrr
-        out_qdd[[4, 6][leg]] = qdd_2_rrr
+        out_qdd[_qdd_rrr[0][leg]] = -qdd_1_rrr
+        out_qdd[_qdd_rrr[1][leg]] = qdd_2_rrr
     return ok, (out_qdd,)
 
 
@@ -3564,8 +3664,8 @@ def _run_legs(m, X, V, A):
     t_ddot_y = A_1
     alpha_z = A_2
     ok = True
-    out_leg_force = m.zeros(9)
-    out_drive = m.zeros(12)
+    out_leg_force = m.zeros("leg_force")
+    out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
         J_2_prrr_zz, J_3_prrr_zz, Kd_2_prrr_t_2, Kd_2_prrr_t_3, branch_2_prrr, g_r0_x, g_r0_y,
@@ -3722,10 +3822,10 @@ def _run_legs(m, X, V, A):
         ok & m.every((abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) & (disc_2_prrr
             >= 0.0) & (abs(-r_2_prrr_r0_y) > _TOLERANCE * size_prrr))
         )
-        out_leg_force[[0][leg]] = c_true_prrr_in_base_x
-        out_leg_force[[1][leg]] = c_true_prrr_in_base_y
-        out_drive[[3][leg]] = -w_2_prrr_t
-        out_drive[[4][leg]] = w_2_prrr_t_2
+        out_leg_force[_leg_force_prrr[0][leg]] = c_true_prrr_in_base_x
+        out_leg_force[_leg_force_prrr[1][leg]] = c_true_prrr_in_base_y
+        out_drive[_drive_prrr[0][leg]] = -w_2_prrr_t
+        out_drive[_drive_prrr[1][leg]] = w_2_prrr_t_2
     for leg, k in legs[1]:
         (
         J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x_2, g_r0_y_2,
@@ -3871,10 +3971,10 @@ def _run_legs(m, X, V, A):
         ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
             0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
-        out_leg_force[[3, 6][leg]] = c_true_rrr_in_base_x
-        out_leg_force[[4, 7][leg]] = c_true_rrr_in_base_y
-        out_drive[[6, 9][leg]] = -w_1_rrr_t
-        out_drive[[7, 10][leg]] = w_1_rrr_t_2
+        out_leg_force[_leg_force_rrr[0][leg]] = c_true_rrr_in_base_x
+        out_leg_force[_leg_force_rrr[1][leg]] = c_true_rrr_in_base_y
+        out_drive[_drive_rrr[0][leg]] = -w_1_rrr_t
+        out_drive[_drive_rrr[1][leg]] = w_1_rrr_t_2
     return ok, (out_leg_force, out_drive,)
 
 
@@ -3894,7 +3994,7 @@ def _run_potential(m, X):
     R_xx = cos(X_2)
     R_yx = sin(X_2)
     ok = True
-    out_potential = m.zeros(1)
+    out_potential = m.zeros("potential")
     # (V1) potential energy
     potential_t_3 = (
     gravity_x*(R_xx*h_star_x + m_star*t_x - R_yx*h_star_y) + gravity_y*(R_xx*h_star_y +
@@ -4050,10 +4150,10 @@ def _run_condition(m, X):
     valid = True
     reached = True
     clear = True
-    out_H = m.zeros(16)
-    out_lengths = m.zeros(2)
-    out_pivots = m.zeros(3)
-    out_reach = m.zeros(3)
+    out_H = m.zeros("H")
+    out_lengths = m.zeros("lengths")
+    out_pivots = m.zeros("pivots")
+    out_reach = m.zeros("reach")
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
@@ -4137,13 +4237,13 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         spread_t_3,
         ))
-        out_H[[12][leg]] = 1.0
-        out_H[[1][leg]] = -w_2_prrr_t
-        out_H[[5][leg]] = w_2_prrr_t_2
-        out_H[[9][leg]] = H_a_2_prrr_z
-        out_H[[13][leg]] = d1_qdd_2_prrr
-        out_pivots[[0][leg]] = least_pivots
-        out_reach[[0][leg]] = disc_2_prrr
+        out_H[_H_prrr[0][leg]] = 1.0
+        out_H[_H_prrr[1][leg]] = -w_2_prrr_t
+        out_H[_H_prrr[2][leg]] = w_2_prrr_t_2
+        out_H[_H_prrr[3][leg]] = H_a_2_prrr_z
+        out_H[_H_prrr[4][leg]] = d1_qdd_2_prrr
+        out_pivots[_pivots_prrr[0][leg]] = least_pivots
+        out_reach[_reach_prrr[0][leg]] = disc_2_prrr
     total_prrr, = sums
     sums = [0.0] * 1
     for leg, k in legs[1]:
@@ -4224,11 +4324,11 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         spread_t_6,
         ))
-        out_H[[2, 3][leg]] = -w_1_rrr_t
-        out_H[[6, 7][leg]] = w_1_rrr_t_2
-        out_H[[10, 11][leg]] = H_a_1_rrr_z
-        out_pivots[[1, 2][leg]] = least_pivots_2
-        out_reach[[1, 2][leg]] = disc_1_rrr
+        out_H[_H_rrr[0][leg]] = -w_1_rrr_t
+        out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
+        out_H[_H_rrr[2][leg]] = H_a_1_rrr_z
+        out_pivots[_pivots_rrr[0][leg]] = least_pivots_2
+        out_reach[_reach_rrr[0][leg]] = disc_1_rrr
     total_rrr, = sums
     # (C2) rms distance of the platform points from their centroid
     spread = sqrt(0.3333333333333333*total_prrr + 0.3333333333333333*total_rrr)
@@ -4241,44 +4341,42 @@ _DEFAULT = Parameters()
 
 
 def _steps_M(m, X):
-    M_of_M, = m.run(_run_M, ((4, 4),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
     return (M_of_M,)
 
 
 def _steps_Z(m, X, V):
-    Z_of_Z, = m.run(_run_Z, ((4,),), X, V)
+    Z_of_Z, = m.run(_run_Z, ("Z",), X, V)
     return (Z_of_Z,)
 
 
 def _steps_H(m, X):
-    H_of_H, = m.run(_run_H, ((4, 4),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 
 def _steps_inverse_kinematics(m, X):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((7,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     return (q_of_inverse_kinematics,)
 
 
 def _steps_joint_rates(m, X, V):
-    qd_of_joint_rates, = m.run(_run_joint_rates, ((7,),), X, V)
+    qd_of_joint_rates, = m.run(_run_joint_rates, ("qd",), X, V)
     return (qd_of_joint_rates,)
 
 
 def _steps_joint_accelerations(m, X, V, A):
-    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ((7,),), X, V, A)
+    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
     return (qdd_of_joint_accelerations,)
 
 
 def _steps_dynamics(m, X, V):
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((4, 4), (4,), (4, 4)), X, V)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
 
 
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
-    required_of_required, H_of_required = m.run(_run_required, ((4,), (4, 4)), X, V, A)
+    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = _extended(wrench, 4)
     subtract_2 = required_of_required - extend_1
     solve_3 = _solve(H_of_required, subtract_2)
@@ -4286,9 +4384,7 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((4, 4), (4,), (4, 4)), X, V)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
     extend_2 = _extended(wrench, 4)
     add_3 = times_1 + extend_2
@@ -4303,25 +4399,25 @@ def _steps_complete_acceleration(m, X, V, A, wrench):
 
 
 def _steps_leg_reactions(m, X, V, A, wrench):
-    required_of_required, H_of_required = m.run(_run_required, ((4,), (4, 4)), X, V, A)
+    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = _extended(wrench, 4)
     subtract_2 = required_of_required - extend_1
     solve_3 = _solve(H_of_required, subtract_2)
-    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ((3, 3), (4, 3)), X, V, A)
+    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
     add_forces_4 = _with_forces(leg_force_of_legs, solve_3, drive_of_legs, [0, 0, 1, 2])
     return (add_forces_4,)
 
 
 def _steps_energy(m, X, V):
-    M_of_M, = m.run(_run_M, ((4, 4),), X)
-    potential_of_potential, = m.run(_run_potential, ((1,),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
+    potential_of_potential, = m.run(_run_potential, ("potential",), X)
     half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
     entry_2 = potential_of_potential[0]
     return (half_form_1, entry_2,)
 
 
 def _steps_null_space(m, X):
-    H_of_H, = m.run(_run_H, ((4, 4),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     null_basis_1 = _null_basis(H_of_H, 4)
     return (null_basis_1,)
 
@@ -4329,7 +4425,7 @@ def _steps_null_space(m, X):
 def _steps_condition(m, X, length):
     (
     H_of_condition, lengths_of_condition, pivots_of_condition, reach_of_condition,
-    ) = m.run(_run_condition, ((4, 4), (2,), (3,), (3,)), X)
+    ) = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
     choose_length_1 = _chosen_length(lengths_of_condition, length)
     divide_rows_2 = _rows_divided(H_of_condition, choose_length_1, [2])
     singular_values_3 = _singular_values(divide_rows_2)
@@ -4337,7 +4433,7 @@ def _steps_condition(m, X, length):
 
 
 def _steps_mismatch(m, X, q_actuated):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((7,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     take_1 = q_of_inverse_kinematics[[0, 1, 3, 5]]
     subtract_2 = q_actuated - take_1
     wrap_turns_3 = _wrapped(subtract_2, [1, 2, 3])
@@ -4345,7 +4441,7 @@ def _steps_mismatch(m, X, q_actuated):
 
 
 def _steps_slope(m, X):
-    H_of_H, = m.run(_run_H, ((4, 4),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 

@@ -65,6 +65,89 @@ NJ = 4
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
 
+_SHAPES = {  # of the arrays that functions give
+    "M": (3, 3),
+    "Z": (3,),
+    "H": (3, 3),
+    "required": (3,),
+    "q": (4,),
+    "qd": (4,),
+    "qdd": (4,),
+    "leg_force": (2, 3),
+    "drive": (3, 3),
+    "potential": (1,),
+    "lengths": (2,),
+    "pivots": (2,),
+    "reach": (2,),
+}
+# Where the entries of a leg type's legs stand in these arrays, row by row.
+_H_rrr = (
+    [0],
+    [3],
+    [6],
+    [1],
+    [4],
+    [7],
+)
+_H_rrr2 = (
+    [2],
+    [5],
+    [8],
+)
+_q_rrr = (
+    [0],
+    [1],
+)
+_q_rrr2 = (
+    [2],
+    [3],
+)
+_qd_rrr = (
+    [0],
+    [1],
+)
+_qd_rrr2 = (
+    [2],
+    [3],
+)
+_qdd_rrr = (
+    [0],
+    [1],
+)
+_qdd_rrr2 = (
+    [2],
+    [3],
+)
+_leg_force_rrr = (
+    [0],
+    [1],
+)
+_drive_rrr = (
+    [0],
+    [1],
+    [3],
+    [4],
+)
+_leg_force_rrr2 = (
+    [3],
+    [4],
+)
+_drive_rrr2 = (
+    [6],
+    [7],
+)
+_pivots_rrr = (
+    [0],
+)
+_reach_rrr = (
+    [0],
+)
+_pivots_rrr2 = (
+    [1],
+)
+_reach_rrr2 = (
+    [1],
+)
 _DRIVEN_JOINTS = (0, 1, 2)
 
 _DEFAULTS = {
@@ -417,6 +500,8 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _rrr = 1
+    _rrr2 = 1
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     platform_mass = p.platform_mass
@@ -534,14 +619,14 @@ def _prepare(p):
     inv_rho2_1_rrr_t_4 = 1.0/rho2_1_rrr_t
     # (rrr-V5) reciprocal vector 1
     inv_size_rrr = 1.0/size_rrr
-    total_rrr = np.sum(np.broadcast_to(rrr_link2_mass, 1))
-    total_rrr_x = np.sum(np.broadcast_to(h_star_t_3, 1))
-    total_rrr_y = np.sum(np.broadcast_to(h_star_t_4, 1))
-    total_rrr_xx = np.sum(np.broadcast_to(J_star_t_7, 1))
-    total_rrr_zz = np.sum(np.broadcast_to(J_star_t_8, 1))
-    total_rrr_x_2 = np.sum(np.broadcast_to(rrr_platform_point_x, 1))
-    total_rrr_y_2 = np.sum(np.broadcast_to(rrr_platform_point_y, 1))
-    total_rrr_2 = np.sum(np.broadcast_to(size_rrr_t, 1))
+    total_rrr = np.sum(np.broadcast_to(rrr_link2_mass, _rrr))
+    total_rrr_x = np.sum(np.broadcast_to(h_star_t_3, _rrr))
+    total_rrr_y = np.sum(np.broadcast_to(h_star_t_4, _rrr))
+    total_rrr_xx = np.sum(np.broadcast_to(J_star_t_7, _rrr))
+    total_rrr_zz = np.sum(np.broadcast_to(J_star_t_8, _rrr))
+    total_rrr_x_2 = np.sum(np.broadcast_to(rrr_platform_point_x, _rrr))
+    total_rrr_y_2 = np.sum(np.broadcast_to(rrr_platform_point_y, _rrr))
+    total_rrr_2 = np.sum(np.broadcast_to(size_rrr_t, _rrr))
     # (rrr2-K17) squared length, across the axis, of the direction fixed in link 2
     uu_2_rrr2_t = rrr2_platform_joint_offset_x*rrr2_platform_joint_offset_x
     # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
@@ -608,14 +693,14 @@ def _prepare(p):
     inv_rho2_1_rrr2_t_4 = 1.0/rho2_1_rrr2_t
     # (rrr2-V5) reciprocal vector 1
     inv_size_rrr2 = 1.0/size_rrr2
-    total_rrr2 = np.sum(np.broadcast_to(rrr2_link2_mass, 1))
-    total_rrr2_x = np.sum(np.broadcast_to(h_star_t_5, 1))
-    total_rrr2_y = np.sum(np.broadcast_to(h_star_t_6, 1))
-    total_rrr2_xx = np.sum(np.broadcast_to(J_star_t_11, 1))
-    total_rrr2_zz = np.sum(np.broadcast_to(J_star_t_12, 1))
-    total_rrr2_x_2 = np.sum(np.broadcast_to(rrr2_platform_point_x, 1))
-    total_rrr2_y_2 = np.sum(np.broadcast_to(rrr2_platform_point_y, 1))
-    total_rrr2_2 = np.sum(np.broadcast_to(size_rrr2_t, 1))
+    total_rrr2 = np.sum(np.broadcast_to(rrr2_link2_mass, _rrr2))
+    total_rrr2_x = np.sum(np.broadcast_to(h_star_t_5, _rrr2))
+    total_rrr2_y = np.sum(np.broadcast_to(h_star_t_6, _rrr2))
+    total_rrr2_xx = np.sum(np.broadcast_to(J_star_t_11, _rrr2))
+    total_rrr2_zz = np.sum(np.broadcast_to(J_star_t_12, _rrr2))
+    total_rrr2_x_2 = np.sum(np.broadcast_to(rrr2_platform_point_x, _rrr2))
+    total_rrr2_y_2 = np.sum(np.broadcast_to(rrr2_platform_point_y, _rrr2))
+    total_rrr2_2 = np.sum(np.broadcast_to(size_rrr2_t, _rrr2))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_rrr + total_rrr2
     # (L2) first moment about the platform origin
@@ -638,7 +723,7 @@ def _prepare(p):
         "dynamics": (
         (J_star_t_14, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
-                (1,
+                (_rrr,
         (J_1_rrr_zz, J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr,
                     d_Gamma_1_rrr_t, d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, g_r0_x, g_r0_y,
                     h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
@@ -648,7 +733,7 @@ def _prepare(p):
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
                     size_rrr,),
                 ),
-                (1,
+                (_rrr2,
         (J_1_rrr2_zz, J_2_rrr2_zz, Jc_1_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2,
                     d_Gamma_1_rrr2_t, d_Gamma_1_rrr2_y, d_c_rrr2_yy, d_phi_2_rrr2_t, g_r0_x_2,
                     g_r0_y_2, h_1_rrr2_x, h_1_rrr2_y, h_2_rrr2_x, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
@@ -663,7 +748,7 @@ def _prepare(p):
         "M": (
         (J_star_t_14, h_star_x, h_star_y, m_star,),
             (
-                (1,
+                (_rrr,
         (J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, d_Gamma_1_rrr_t,
                     d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, h_2_rrr_y, inv_Kd_1_rrr_t_5,
                     inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
@@ -672,7 +757,7 @@ def _prepare(p):
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
                     size_rrr,),
                 ),
-                (1,
+                (_rrr2,
         (J_2_rrr2_zz, Jc_1_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, d_Gamma_1_rrr2_t,
                     d_Gamma_1_rrr2_y, d_c_rrr2_yy, d_phi_2_rrr2_t, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
                     inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t,
@@ -686,7 +771,7 @@ def _prepare(p):
         "Z": (
         (Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y,),
             (
-                (1,
+                (_rrr,
         (J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x, g_r0_y,
                     h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
                     inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
@@ -695,7 +780,7 @@ def _prepare(p):
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
                     size_rrr,),
                 ),
-                (1,
+                (_rrr2,
         (J_1_rrr2_zz, J_2_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, g_r0_x_2,
                     g_r0_y_2, h_1_rrr2_x, h_1_rrr2_y, h_2_rrr2_x, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
                     inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t,
@@ -709,7 +794,7 @@ def _prepare(p):
         "H": (
         (),
             (
-                (1,
+                (_rrr,
         (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
                     inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
                     rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
@@ -717,7 +802,7 @@ def _prepare(p):
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
                     size_rrr,),
                 ),
-                (1,
+                (_rrr2,
         (Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5, inv_uu_2_rrr2_t,
                     rho2_1_rrr2_t, rrr2_base_frame_xx, rrr2_base_frame_xy, rrr2_base_frame_yx,
                     rrr2_base_frame_yy, rrr2_base_point_x, rrr2_base_point_y,
@@ -729,7 +814,7 @@ def _prepare(p):
         "required": (
         (J_star_zz, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
-                (1,
+                (_rrr,
         (J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x, g_r0_y,
                     h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
                     inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
@@ -738,7 +823,7 @@ def _prepare(p):
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
                     size_rrr,),
                 ),
-                (1,
+                (_rrr2,
         (J_1_rrr2_zz, J_2_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, g_r0_x_2,
                     g_r0_y_2, h_1_rrr2_x, h_1_rrr2_y, h_2_rrr2_x, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
                     inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t,
@@ -752,13 +837,13 @@ def _prepare(p):
         "inverse_kinematics": (
         (),
             (
-                (1,
+                (_rrr,
         (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t, rho2_1_rrr_t,
                     rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
                     rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,),
                 ),
-                (1,
+                (_rrr2,
         (Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5, inv_uu_2_rrr2_t,
                     rho2_1_rrr2_t, rrr2_base_frame_xx, rrr2_base_frame_xy, rrr2_base_frame_yx,
                     rrr2_base_frame_yy, rrr2_base_point_x, rrr2_base_point_y,
@@ -770,7 +855,7 @@ def _prepare(p):
         "joint_rates": (
         (),
             (
-                (1,
+                (_rrr,
         (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
                     inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
                     rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
@@ -778,7 +863,7 @@ def _prepare(p):
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
                     size_rrr,),
                 ),
-                (1,
+                (_rrr2,
         (Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5,
                     inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t,
                     rrr2_base_frame_xx, rrr2_base_frame_xy, rrr2_base_frame_yx,
@@ -791,7 +876,7 @@ def _prepare(p):
         "joint_accelerations": (
         (),
             (
-                (1,
+                (_rrr,
         (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
                     inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
                     rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
@@ -799,7 +884,7 @@ def _prepare(p):
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
                     size_rrr,),
                 ),
-                (1,
+                (_rrr2,
         (Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5,
                     inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t,
                     rrr2_base_frame_xx, rrr2_base_frame_xy, rrr2_base_frame_yx,
@@ -812,7 +897,7 @@ def _prepare(p):
         "legs": (
         (gravity_x, gravity_y,),
             (
-                (1,
+                (_rrr,
         (J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x, g_r0_y,
                     h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
                     inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
@@ -821,7 +906,7 @@ def _prepare(p):
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
                     size_rrr,),
                 ),
-                (1,
+                (_rrr2,
         (J_1_rrr2_zz, J_2_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, g_r0_x_2,
                     g_r0_y_2, h_1_rrr2_x, h_1_rrr2_y, h_2_rrr2_x, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
                     inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t,
@@ -835,7 +920,7 @@ def _prepare(p):
         "potential": (
         (gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
-                (1,
+                (_rrr,
         (Kd_1_rrr_t_2, Kd_1_rrr_t_3, b_rrr_r0_x, b_rrr_r0_y, branch_1_rrr, g_r0_x, g_r0_y,
                     h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t,
                     rho2_1_rrr_t, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
@@ -843,7 +928,7 @@ def _prepare(p):
                     rrr_link1_mass, rrr_platform_joint_offset_x, rrr_platform_point_x,
                     rrr_platform_point_y,),
                 ),
-                (1,
+                (_rrr2,
         (Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, b_rrr2_r0_x, b_rrr2_r0_y, branch_1_rrr2, g_r0_x_2,
                     g_r0_y_2, h_1_rrr2_x, h_1_rrr2_y, h_2_rrr2_x, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
                     inv_uu_2_rrr2_t, rho2_1_rrr2_t, rrr2_base_frame_xx, rrr2_base_frame_xy,
@@ -856,7 +941,7 @@ def _prepare(p):
         "condition": (
         (b_c_x, b_c_y, legs_size,),
             (
-                (1,
+                (_rrr,
         (Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_rho2_1_rrr_t_4,
                     inv_rrr_platform_joint_offset_x, inv_size_rrr, inv_uu_2_rrr_t, rho2_1_rrr_t,
                     rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
@@ -864,7 +949,7 @@ def _prepare(p):
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
                     size_rrr,),
                 ),
-                (1,
+                (_rrr2,
         (Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5, inv_rho2_1_rrr2_t_4,
                     inv_size_rrr2, inv_uu_2_rrr2_t, rho2_1_rrr2_t, rrr2_base_frame_xx,
                     rrr2_base_frame_xy, rrr2_base_frame_yx, rrr2_base_frame_yy, rrr2_base_point_x,
@@ -913,16 +998,16 @@ class _Floats:
         """Shared values, and (leg, its values) for every leg of each loop."""
         return _constants(self.p, name)[:2]
 
-    def zeros(self, size):
-        return [0.0] * size
+    def zeros(self, name):
+        return [0.0] * math.prod(_SHAPES[name])
 
     def added(self, sums, leg, terms):
         """Sums over the legs so far."""
         return [a + b for a, b in zip(sums, terms)]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(shape)), np.nan) for shape in shapes]
+        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
         for k in range(self.states):
             try:
@@ -932,7 +1017,7 @@ class _Floats:
             if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
                 for a, array in zip(found, arrays):
                     a[k] = array
-        return [a.T.reshape(*shape, self.states) for a, shape in zip(found, shapes)]
+        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
 
 
 class _Arrays:
@@ -948,8 +1033,8 @@ class _Arrays:
         shared, _, columns = _constants(self.p, name)
         return shared, columns
 
-    def zeros(self, size):
-        return np.zeros((size, self.states))
+    def zeros(self, name):
+        return np.zeros((math.prod(_SHAPES[name]), self.states))
 
     def every(self, good):
         """Whether it holds for all legs."""
@@ -960,7 +1045,7 @@ class _Arrays:
         shape = (legs.stop, self.states)
         return [np.add.reduce(np.broadcast_to(t, shape), axis=0) for t in terms]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
         ok, arrays = function(self, *vectors)
         for a in arrays:
@@ -968,7 +1053,7 @@ class _Arrays:
         if not np.all(ok):
             for a in arrays:
                 a[:, ~ok] = np.nan
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
 
 class _Judged(_Arrays):
@@ -978,12 +1063,12 @@ class _Judged(_Arrays):
         super().__init__(p, states)
         self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
         (valid, reached, clear), arrays = function(self, *vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
             self.failed[code] |= ~np.broadcast_to(good, self.states)
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -1320,9 +1405,9 @@ def _run_dynamics(m, X, V):
     t_dot_y = V_1
     omega_z = V_2
     ok = True
-    out_M = m.zeros(9)
-    out_Z = m.zeros(3)
-    out_H = m.zeros(9)
+    out_M = m.zeros("M")
+    out_Z = m.zeros("Z")
+    out_H = m.zeros("H")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
     h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
@@ -1517,12 +1602,12 @@ def _run_dynamics(m, X, V):
         Q_rrr_t_5, Q_rrr_t_6, Q_rrr_t_7, M_ta_t, M_ta_t_2, M_aa_t, U_rrr_in_base_x,
             U_rrr_in_base_y, Z_a_t,
         ))
-        out_H[[0][leg]] = -w_1_rrr_t
-        out_H[[3][leg]] = w_1_rrr_t_2
-        out_H[[6][leg]] = H_a_1_rrr_z
-        out_H[[1][leg]] = w_2_rrr_in_base_x
-        out_H[[4][leg]] = w_2_rrr_in_base_y
-        out_H[[7][leg]] = H_a_2_rrr_z
+        out_H[_H_rrr[0][leg]] = -w_1_rrr_t
+        out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
+        out_H[_H_rrr[2][leg]] = H_a_1_rrr_z
+        out_H[_H_rrr[3][leg]] = w_2_rrr_in_base_x
+        out_H[_H_rrr[4][leg]] = w_2_rrr_in_base_y
+        out_H[_H_rrr[5][leg]] = H_a_2_rrr_z
     (
     total_rrr_xx, total_rrr_xy, total_rrr_yy, total_rrr_xz, total_rrr_yz, total_rrr_zz,
         total_rrr_x, total_rrr_y, total_rrr_z,
@@ -1707,9 +1792,9 @@ def _run_dynamics(m, X, V):
         Q_rrr2_t_5, Q_rrr2_t_6, Q_rrr2_t_7, M_ta_t_3, M_ta_t_4, M_aa_t_2, U_rrr2_in_base_x,
             U_rrr2_in_base_y, Z_a_t_2,
         ))
-        out_H[[2][leg]] = -w_1_rrr2_t
-        out_H[[5][leg]] = w_1_rrr2_t_2
-        out_H[[8][leg]] = H_a_1_rrr2_z
+        out_H[_H_rrr2[0][leg]] = -w_1_rrr2_t
+        out_H[_H_rrr2[1][leg]] = w_1_rrr2_t_2
+        out_H[_H_rrr2[2][leg]] = H_a_1_rrr2_z
     (
     total_rrr2_xx, total_rrr2_xy, total_rrr2_yy, total_rrr2_xz, total_rrr2_yz, total_rrr2_zz,
         total_rrr2_x, total_rrr2_y, total_rrr2_z,
@@ -1759,7 +1844,7 @@ def _run_M(m, X):
     R_xx = cos(X_2)
     R_yx = sin(X_2)
     ok = True
-    out_M = m.zeros(9)
+    out_M = m.zeros("M")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
     h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
@@ -2003,7 +2088,7 @@ def _run_Z(m, X, V):
     t_dot_y = V_1
     omega_z = V_2
     ok = True
-    out_Z = m.zeros(3)
+    out_Z = m.zeros("Z")
     # (P1) centripetal tensor of the platform
     W_p_t = omega_z*omega_z
     # (M4) centripetal force and weight of the platform
@@ -2320,7 +2405,7 @@ def _run_H(m, X):
     R_xx = cos(X_2)
     R_yx = sin(X_2)
     ok = True
-    out_H = m.zeros(9)
+    out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
         Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
@@ -2402,12 +2487,12 @@ def _run_H(m, X):
         ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
             0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
-        out_H[[0][leg]] = -w_1_rrr_t
-        out_H[[3][leg]] = w_1_rrr_t_2
-        out_H[[6][leg]] = H_a_1_rrr_z
-        out_H[[1][leg]] = w_2_rrr_in_base_x
-        out_H[[4][leg]] = w_2_rrr_in_base_y
-        out_H[[7][leg]] = H_a_2_rrr_z
+        out_H[_H_rrr[0][leg]] = -w_1_rrr_t
+        out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
+        out_H[_H_rrr[2][leg]] = H_a_1_rrr_z
+        out_H[_H_rrr[3][leg]] = w_2_rrr_in_base_x
+        out_H[_H_rrr[4][leg]] = w_2_rrr_in_base_y
+        out_H[_H_rrr[5][leg]] = H_a_2_rrr_z
     for leg, k in legs[1]:
         (
         Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5, inv_uu_2_rrr2_t,
@@ -2471,9 +2556,9 @@ def _run_H(m, X):
         ok & m.every((abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2
             >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
         )
-        out_H[[2][leg]] = -w_1_rrr2_t
-        out_H[[5][leg]] = w_1_rrr2_t_2
-        out_H[[8][leg]] = H_a_1_rrr2_z
+        out_H[_H_rrr2[0][leg]] = -w_1_rrr2_t
+        out_H[_H_rrr2[1][leg]] = w_1_rrr2_t_2
+        out_H[_H_rrr2[2][leg]] = H_a_1_rrr2_z
     return ok, (out_H,)
 
 
@@ -2507,8 +2592,8 @@ def _run_required(m, X, V, A):
     t_ddot_y = A_1
     alpha_z = A_2
     ok = True
-    out_required = m.zeros(3)
-    out_H = m.zeros(9)
+    out_required = m.zeros("required")
+    out_H = m.zeros("H")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
     h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
@@ -2683,12 +2768,12 @@ def _run_required(m, X, V, A):
         sums = m.added(sums, leg, (
         c_rrr_in_base_x, c_rrr_in_base_y, R_a_t,
         ))
-        out_H[[0][leg]] = -w_1_rrr_t
-        out_H[[3][leg]] = w_1_rrr_t_2
-        out_H[[6][leg]] = H_a_1_rrr_z
-        out_H[[1][leg]] = w_2_rrr_in_base_x
-        out_H[[4][leg]] = w_2_rrr_in_base_y
-        out_H[[7][leg]] = H_a_2_rrr_z
+        out_H[_H_rrr[0][leg]] = -w_1_rrr_t
+        out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
+        out_H[_H_rrr[2][leg]] = H_a_1_rrr_z
+        out_H[_H_rrr[3][leg]] = w_2_rrr_in_base_x
+        out_H[_H_rrr[4][leg]] = w_2_rrr_in_base_y
+        out_H[_H_rrr[5][leg]] = H_a_2_rrr_z
     total_rrr_x, total_rrr_y, total_rrr_z = sums
     sums = [0.0] * 3
     for leg, k in legs[1]:
@@ -2842,9 +2927,9 @@ def _run_required(m, X, V, A):
         sums = m.added(sums, leg, (
         c_rrr2_in_base_x, c_rrr2_in_base_y, R_a_t_2,
         ))
-        out_H[[2][leg]] = -w_1_rrr2_t
-        out_H[[5][leg]] = w_1_rrr2_t_2
-        out_H[[8][leg]] = H_a_1_rrr2_z
+        out_H[_H_rrr2[0][leg]] = -w_1_rrr2_t
+        out_H[_H_rrr2[1][leg]] = w_1_rrr2_t_2
+        out_H[_H_rrr2[2][leg]] = H_a_1_rrr2_z
     total_rrr2_x, total_rrr2_y, total_rrr2_z = sums
     # (E4) force that actuators and external wrench must give
     R_t_x = f_p_x - total_rrr2_x - total_rrr_x
@@ -2873,7 +2958,7 @@ def _run_inverse_kinematics(m, X):
     R_xx = cos(X_2)
     R_yx = sin(X_2)
     ok = True
-    out_q = m.zeros(4)
+    out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
         Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_uu_2_rrr_t, rho2_1_rrr_t,
@@ -2919,8 +3004,8 @@ def _run_inverse_kinematics(m, X):
         ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
             0.0))
         )
-        out_q[[0][leg]] = q_1_rrr
-        out_q[[1][leg]] = q_2_rrr
+        out_q[_q_rrr[0][leg]] = q_1_rrr
+        out_q[_q_rrr[1][leg]] = q_2_rrr
     for leg, k in legs[1]:
         (
         Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5, inv_uu_2_rrr2_t,
@@ -2970,8 +3055,8 @@ def _run_inverse_kinematics(m, X):
         ok & m.every((abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2
             >= 0.0))
         )
-        out_q[[2][leg]] = q_1_rrr2
-        out_q[[3][leg]] = q_2_rrr2
+        out_q[_q_rrr2[0][leg]] = q_1_rrr2
+        out_q[_q_rrr2[1][leg]] = q_2_rrr2
     return ok, (out_q,)
 
 
@@ -2997,7 +3082,7 @@ def _run_joint_rates(m, X, V):
     t_dot_y = V_1
     omega_z = V_2
     ok = True
-    out_qd = m.zeros(4)
+    out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
         Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
@@ -3071,8 +3156,8 @@ def _run_joint_rates(m, X, V):
         ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
             0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
-        out_qd[[0][leg]] = -qd_1_rrr
-        out_qd[[1][leg]] = qd_2_rrr
+        out_qd[_qd_rrr[0][leg]] = -qd_1_rrr
+        out_qd[_qd_rrr[1][leg]] = qd_2_rrr
     for leg, k in legs[1]:
         (
         Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5,
@@ -3146,8 +3231,8 @@ def _run_joint_rates(m, X, V):
         ok & m.every((abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2
             >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
         )
-        out_qd[[2][leg]] = -qd_1_rrr2
-        out_qd[[3][leg]] = qd_2_rrr2
+        out_qd[_qd_rrr2[0][leg]] = -qd_1_rrr2
+        out_qd[_qd_rrr2[1][leg]] = qd_2_rrr2
     return ok, (out_qd,)
 
 
@@ -3180,7 +3265,7 @@ def _run_joint_accelerations(m, X, V, A):
     t_ddot_y = A_1
     alpha_z = A_2
     ok = True
-    out_qdd = m.zeros(4)
+    out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
         Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5,
@@ -3283,8 +3368,8 @@ def _run_joint_accelerations(m, X, V, A):
         ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
             0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
-        out_qdd[[0][leg]] = -qdd_1_rrr
-        out_qdd[[1][leg]] = qdd_2_rrr
+        out_qdd[_qdd_rrr[0][leg]] = -qdd_1_rrr
+        out_qdd[_qdd_rrr[1][leg]] = qdd_2_rrr
     for leg, k in legs[1]:
         (
         Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5,
@@ -3387,8 +3472,8 @@ def _run_joint_accelerations(m, X, V, A):
         ok & m.every((abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2
             >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
         )
-        out_qdd[[2][leg]] = -qdd_1_rrr2
-        out_qdd[[3][leg]] = qdd_2_rrr2
+        out_qdd[_qdd_rrr2[0][leg]] = -qdd_1_rrr2
+        out_qdd[_qdd_rrr2[1][leg]] = qdd_2_rrr2
     return ok, (out_qdd,)
 
 
@@ -3422,8 +3507,8 @@ def _run_legs(m, X, V, A):
     t_ddot_y = A_1
     alpha_z = A_2
     ok = True
-    out_leg_force = m.zeros(6)
-    out_drive = m.zeros(9)
+    out_leg_force = m.zeros("leg_force")
+    out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
         J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x, g_r0_y,
@@ -3580,12 +3665,12 @@ def _run_legs(m, X, V, A):
         ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
             0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
-        out_leg_force[[0][leg]] = c_true_rrr_in_base_x
-        out_leg_force[[1][leg]] = c_true_rrr_in_base_y
-        out_drive[[0][leg]] = -w_1_rrr_t
-        out_drive[[1][leg]] = w_1_rrr_t_2
-        out_drive[[3][leg]] = w_2_rrr_in_base_x
-        out_drive[[4][leg]] = w_2_rrr_in_base_y
+        out_leg_force[_leg_force_rrr[0][leg]] = c_true_rrr_in_base_x
+        out_leg_force[_leg_force_rrr[1][leg]] = c_true_rrr_in_base_y
+        out_drive[_drive_rrr[0][leg]] = -w_1_rrr_t
+        out_drive[_drive_rrr[1][leg]] = w_1_rrr_t_2
+        out_drive[_drive_rrr[2][leg]] = w_2_rrr_in_base_x
+        out_drive[_drive_rrr[3][leg]] = w_2_rrr_in_base_y
     for leg, k in legs[1]:
         (
         J_1_rrr2_zz, J_2_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, g_r0_x_2, g_r0_y_2,
@@ -3733,10 +3818,10 @@ def _run_legs(m, X, V, A):
         ok & m.every((abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2
             >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
         )
-        out_leg_force[[3][leg]] = c_true_rrr2_in_base_x
-        out_leg_force[[4][leg]] = c_true_rrr2_in_base_y
-        out_drive[[6][leg]] = -w_1_rrr2_t
-        out_drive[[7][leg]] = w_1_rrr2_t_2
+        out_leg_force[_leg_force_rrr2[0][leg]] = c_true_rrr2_in_base_x
+        out_leg_force[_leg_force_rrr2[1][leg]] = c_true_rrr2_in_base_y
+        out_drive[_drive_rrr2[0][leg]] = -w_1_rrr2_t
+        out_drive[_drive_rrr2[1][leg]] = w_1_rrr2_t_2
     return ok, (out_leg_force, out_drive,)
 
 
@@ -3756,7 +3841,7 @@ def _run_potential(m, X):
     R_xx = cos(X_2)
     R_yx = sin(X_2)
     ok = True
-    out_potential = m.zeros(1)
+    out_potential = m.zeros("potential")
     # (V1) potential energy
     potential_t = (
     gravity_x*(R_xx*h_star_x + m_star*t_x - R_yx*h_star_y) + gravity_y*(R_xx*h_star_y +
@@ -3907,10 +3992,10 @@ def _run_condition(m, X):
     valid = True
     reached = True
     clear = True
-    out_H = m.zeros(9)
-    out_lengths = m.zeros(2)
-    out_pivots = m.zeros(2)
-    out_reach = m.zeros(2)
+    out_H = m.zeros("H")
+    out_lengths = m.zeros("lengths")
+    out_pivots = m.zeros("pivots")
+    out_reach = m.zeros("reach")
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
@@ -4008,14 +4093,14 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         spread_t_3,
         ))
-        out_H[[0][leg]] = -w_1_rrr_t
-        out_H[[3][leg]] = w_1_rrr_t_2
-        out_H[[6][leg]] = H_a_1_rrr_z
-        out_H[[1][leg]] = w_2_rrr_in_base_x
-        out_H[[4][leg]] = w_2_rrr_in_base_y
-        out_H[[7][leg]] = H_a_2_rrr_z
-        out_pivots[[0][leg]] = least_pivots
-        out_reach[[0][leg]] = disc_1_rrr
+        out_H[_H_rrr[0][leg]] = -w_1_rrr_t
+        out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
+        out_H[_H_rrr[2][leg]] = H_a_1_rrr_z
+        out_H[_H_rrr[3][leg]] = w_2_rrr_in_base_x
+        out_H[_H_rrr[4][leg]] = w_2_rrr_in_base_y
+        out_H[_H_rrr[5][leg]] = H_a_2_rrr_z
+        out_pivots[_pivots_rrr[0][leg]] = least_pivots
+        out_reach[_reach_rrr[0][leg]] = disc_1_rrr
     total_rrr, = sums
     sums = [0.0] * 1
     for leg, k in legs[1]:
@@ -4096,11 +4181,11 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         spread_t_6,
         ))
-        out_H[[2][leg]] = -w_1_rrr2_t
-        out_H[[5][leg]] = w_1_rrr2_t_2
-        out_H[[8][leg]] = H_a_1_rrr2_z
-        out_pivots[[1][leg]] = least_pivots_2
-        out_reach[[1][leg]] = disc_1_rrr2
+        out_H[_H_rrr2[0][leg]] = -w_1_rrr2_t
+        out_H[_H_rrr2[1][leg]] = w_1_rrr2_t_2
+        out_H[_H_rrr2[2][leg]] = H_a_1_rrr2_z
+        out_pivots[_pivots_rrr2[0][leg]] = least_pivots_2
+        out_reach[_reach_rrr2[0][leg]] = disc_1_rrr2
     total_rrr2, = sums
     # (C2) rms distance of the platform points from their centroid
     spread = sqrt(0.5*total_rrr + 0.5*total_rrr2)
@@ -4113,44 +4198,42 @@ _DEFAULT = Parameters()
 
 
 def _steps_M(m, X):
-    M_of_M, = m.run(_run_M, ((3, 3),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
     return (M_of_M,)
 
 
 def _steps_Z(m, X, V):
-    Z_of_Z, = m.run(_run_Z, ((3,),), X, V)
+    Z_of_Z, = m.run(_run_Z, ("Z",), X, V)
     return (Z_of_Z,)
 
 
 def _steps_H(m, X):
-    H_of_H, = m.run(_run_H, ((3, 3),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 
 def _steps_inverse_kinematics(m, X):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((4,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     return (q_of_inverse_kinematics,)
 
 
 def _steps_joint_rates(m, X, V):
-    qd_of_joint_rates, = m.run(_run_joint_rates, ((4,),), X, V)
+    qd_of_joint_rates, = m.run(_run_joint_rates, ("qd",), X, V)
     return (qd_of_joint_rates,)
 
 
 def _steps_joint_accelerations(m, X, V, A):
-    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ((4,),), X, V, A)
+    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
     return (qdd_of_joint_accelerations,)
 
 
 def _steps_dynamics(m, X, V):
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((3, 3), (3,), (3, 3)), X, V)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
 
 
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
-    required_of_required, H_of_required = m.run(_run_required, ((3,), (3, 3)), X, V, A)
+    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     solve_3 = _solve(H_of_required, subtract_2)
@@ -4158,9 +4241,7 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((3, 3), (3,), (3, 3)), X, V)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
     extend_2 = wrench
     add_3 = times_1 + extend_2
@@ -4175,25 +4256,25 @@ def _steps_complete_acceleration(m, X, V, A, wrench):
 
 
 def _steps_leg_reactions(m, X, V, A, wrench):
-    required_of_required, H_of_required = m.run(_run_required, ((3,), (3, 3)), X, V, A)
+    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     solve_3 = _solve(H_of_required, subtract_2)
-    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ((2, 3), (3, 3)), X, V, A)
+    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
     add_forces_4 = _with_forces(leg_force_of_legs, solve_3, drive_of_legs, [0, 0, 1])
     return (add_forces_4,)
 
 
 def _steps_energy(m, X, V):
-    M_of_M, = m.run(_run_M, ((3, 3),), X)
-    potential_of_potential, = m.run(_run_potential, ((1,),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
+    potential_of_potential, = m.run(_run_potential, ("potential",), X)
     half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
     entry_2 = potential_of_potential[0]
     return (half_form_1, entry_2,)
 
 
 def _steps_null_space(m, X):
-    H_of_H, = m.run(_run_H, ((3, 3),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     null_basis_1 = _null_basis(H_of_H, 3)
     return (null_basis_1,)
 
@@ -4201,7 +4282,7 @@ def _steps_null_space(m, X):
 def _steps_condition(m, X, length):
     (
     H_of_condition, lengths_of_condition, pivots_of_condition, reach_of_condition,
-    ) = m.run(_run_condition, ((3, 3), (2,), (2,), (2,)), X)
+    ) = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
     choose_length_1 = _chosen_length(lengths_of_condition, length)
     divide_rows_2 = _rows_divided(H_of_condition, choose_length_1, [2])
     singular_values_3 = _singular_values(divide_rows_2)
@@ -4209,7 +4290,7 @@ def _steps_condition(m, X, length):
 
 
 def _steps_mismatch(m, X, q_actuated):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((4,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     take_1 = q_of_inverse_kinematics[0:3]
     subtract_2 = q_actuated - take_1
     wrap_turns_3 = _wrapped(subtract_2, [0, 1, 2])
@@ -4217,7 +4298,7 @@ def _steps_mismatch(m, X, q_actuated):
 
 
 def _steps_slope(m, X):
-    H_of_H, = m.run(_run_H, ((3, 3),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 

@@ -67,6 +67,55 @@ NJ = 9
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
 
+_SHAPES = {  # of the arrays that functions give
+    "M": (3, 3),
+    "Z": (3,),
+    "H": (3, 3),
+    "required": (3,),
+    "q": (9,),
+    "qd": (9,),
+    "qdd": (9,),
+    "leg_force": (3, 3),
+    "drive": (3, 3),
+    "potential": (1,),
+    "lengths": (2,),
+    "pivots": (3,),
+    "reach": (3,),
+}
+# Where the entries of a leg type's legs stand in these arrays, row by row.
+_H_ups = (
+    [0, 1, 2],
+    [3, 4, 5],
+    [6, 7, 8],
+)
+_q_ups = (
+    [0, 3, 6],
+    [1, 4, 7],
+    [2, 5, 8],
+)
+_qd_ups = (
+    [0, 3, 6],
+    [1, 4, 7],
+    [2, 5, 8],
+)
+_qdd_ups = (
+    [0, 3, 6],
+    [1, 4, 7],
+    [2, 5, 8],
+)
+_leg_force_ups = (
+    [0, 3, 6],
+    [1, 4, 7],
+    [2, 5, 8],
+)
+_drive_ups = (
+    [0, 3, 6],
+    [1, 4, 7],
+    [2, 5, 8],
+)
+_pivots_ups = (
+    [0, 1, 2],
+)
 _DRIVEN_JOINTS = (2, 5, 8)
 
 _DEFAULTS = {
@@ -375,6 +424,7 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _ups = 3
     fixed_centre_x = p.fixed_centre[0]
     fixed_centre_y = p.fixed_centre[1]
     fixed_centre_z = p.fixed_centre[2]
@@ -537,19 +587,19 @@ def _prepare(p):
     ups_base_frame_xz*ups_base_point_x + ups_base_frame_yz*ups_base_point_y +
         ups_base_frame_zz*ups_base_point_z
     )
-    total_ups_xx = np.sum(np.broadcast_to(J_star_t_15, 3))
-    total_ups_xy = np.sum(np.broadcast_to(J_star_t_16, 3))
-    total_ups_xz = np.sum(np.broadcast_to(J_star_t_17, 3))
-    total_ups_yy = np.sum(np.broadcast_to(J_star_t_18, 3))
-    total_ups_yz = np.sum(np.broadcast_to(J_star_t_19, 3))
-    total_ups_zz = np.sum(np.broadcast_to(J_star_t_20, 3))
-    total_ups_x = np.sum(np.broadcast_to(h_star_t_4, 3))
-    total_ups_y = np.sum(np.broadcast_to(h_star_t_5, 3))
-    total_ups_z = np.sum(np.broadcast_to(h_star_t_6, 3))
-    total_ups = np.sum(np.broadcast_to(ups_link3_mass, 3))
-    total_ups_x_2 = np.sum(np.broadcast_to(ups_platform_point_x, 3))
-    total_ups_y_2 = np.sum(np.broadcast_to(ups_platform_point_y, 3))
-    total_ups_z_2 = np.sum(np.broadcast_to(ups_platform_point_z, 3))
+    total_ups_xx = np.sum(np.broadcast_to(J_star_t_15, _ups))
+    total_ups_xy = np.sum(np.broadcast_to(J_star_t_16, _ups))
+    total_ups_xz = np.sum(np.broadcast_to(J_star_t_17, _ups))
+    total_ups_yy = np.sum(np.broadcast_to(J_star_t_18, _ups))
+    total_ups_yz = np.sum(np.broadcast_to(J_star_t_19, _ups))
+    total_ups_zz = np.sum(np.broadcast_to(J_star_t_20, _ups))
+    total_ups_x = np.sum(np.broadcast_to(h_star_t_4, _ups))
+    total_ups_y = np.sum(np.broadcast_to(h_star_t_5, _ups))
+    total_ups_z = np.sum(np.broadcast_to(h_star_t_6, _ups))
+    total_ups = np.sum(np.broadcast_to(ups_link3_mass, _ups))
+    total_ups_x_2 = np.sum(np.broadcast_to(ups_platform_point_x, _ups))
+    total_ups_y_2 = np.sum(np.broadcast_to(ups_platform_point_y, _ups))
+    total_ups_z_2 = np.sum(np.broadcast_to(ups_platform_point_z, _ups))
     # (L3) inertia tensor about the platform origin
     J_star_xx = platform_inertia_xx - J_star_t_5 - total_ups_xx
     J_star_xy = platform_inertia_xy - J_star_t_6 - total_ups_xy
@@ -581,7 +631,7 @@ def _prepare(p):
                 J_star_zz, fixed_centre_x, fixed_centre_y, fixed_centre_z, gravity_x, gravity_y,
                 gravity_z, h_star_x, h_star_y, h_star_z,),
             (
-                (3,
+                (_ups,
         (J_group_2_xx, J_group_2_xy, J_group_2_xz, J_group_2_yy, J_group_2_yz, J_group_2_zz,
                     Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1, branch_2, g_r0_x, g_r0_y,
                     g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, ups_base_frame_xx,
@@ -596,7 +646,7 @@ def _prepare(p):
         (J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yz, fixed_centre_x,
                 fixed_centre_y, fixed_centre_z,),
             (
-                (3,
+                (_ups,
         (J_group_2_xx, J_group_2_xy, J_group_2_xz, J_group_2_yy, J_group_2_yz, J_group_2_zz,
                     branch_1, branch_2, h_3_x, h_3_y, h_3_z, ups_base_frame_xx, ups_base_frame_xy,
                     ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
@@ -611,7 +661,7 @@ def _prepare(p):
                 fixed_centre_y, fixed_centre_z, gravity_x, gravity_y, gravity_z, h_star_x,
                 h_star_y, h_star_z,),
             (
-                (3,
+                (_ups,
         (J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
                     branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
                     ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
@@ -624,7 +674,7 @@ def _prepare(p):
         "H": (
         (fixed_centre_x, fixed_centre_y, fixed_centre_z,),
             (
-                (3,
+                (_ups,
         (branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
                     ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
                     ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
@@ -637,7 +687,7 @@ def _prepare(p):
                 fixed_centre_y, fixed_centre_z, gravity_x, gravity_y, gravity_z, h_star_x,
                 h_star_y, h_star_z,),
             (
-                (3,
+                (_ups,
         (J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
                     branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
                     ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
@@ -650,7 +700,7 @@ def _prepare(p):
         "inverse_kinematics": (
         (fixed_centre_x, fixed_centre_y, fixed_centre_z,),
             (
-                (3,
+                (_ups,
         (branch_1, branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
                     ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
                     ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
@@ -662,7 +712,7 @@ def _prepare(p):
         "joint_rates": (
         (fixed_centre_x, fixed_centre_y, fixed_centre_z,),
             (
-                (3,
+                (_ups,
         (branch_1, branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
                     ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
                     ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
@@ -674,7 +724,7 @@ def _prepare(p):
         "joint_accelerations": (
         (fixed_centre_x, fixed_centre_y, fixed_centre_z,),
             (
-                (3,
+                (_ups,
         (branch_1, branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
                     ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
                     ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
@@ -686,7 +736,7 @@ def _prepare(p):
         "legs": (
         (fixed_centre_x, fixed_centre_y, fixed_centre_z,),
             (
-                (3,
+                (_ups,
         (J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
                     branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
                     ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
@@ -701,7 +751,7 @@ def _prepare(p):
         (fixed_centre_x, fixed_centre_y, fixed_centre_z, gravity_x, gravity_y, gravity_z,
                 h_star_x, h_star_y, h_star_z, potential_t, potential_t_2, potential_t_3,),
             (
-                (3,
+                (_ups,
         (b_r0_x, b_r0_y, b_r0_z, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z,
                     h_3_x, h_3_y, h_3_z, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
                     ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
@@ -715,7 +765,7 @@ def _prepare(p):
         (b_c_x, b_c_y, b_c_z, fixed_centre_x, fixed_centre_y, fixed_centre_z, legs_size,
                 spread_t,),
             (
-                (3,
+                (_ups,
         (branch_1, branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
                     ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
                     ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
@@ -764,16 +814,16 @@ class _Floats:
         """Shared values, and (leg, its values) for every leg of each loop."""
         return _constants(self.p, name)[:2]
 
-    def zeros(self, size):
-        return [0.0] * size
+    def zeros(self, name):
+        return [0.0] * math.prod(_SHAPES[name])
 
     def added(self, sums, leg, terms):
         """Sums over the legs so far."""
         return [a + b for a, b in zip(sums, terms)]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(shape)), np.nan) for shape in shapes]
+        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
         for k in range(self.states):
             try:
@@ -783,7 +833,7 @@ class _Floats:
             if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
                 for a, array in zip(found, arrays):
                     a[k] = array
-        return [a.T.reshape(*shape, self.states) for a, shape in zip(found, shapes)]
+        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
 
 
 class _Arrays:
@@ -799,8 +849,8 @@ class _Arrays:
         shared, _, columns = _constants(self.p, name)
         return shared, columns
 
-    def zeros(self, size):
-        return np.zeros((size, self.states))
+    def zeros(self, name):
+        return np.zeros((math.prod(_SHAPES[name]), self.states))
 
     def every(self, good):
         """Whether it holds for all legs."""
@@ -811,7 +861,7 @@ class _Arrays:
         shape = (legs.stop, self.states)
         return [np.add.reduce(np.broadcast_to(t, shape), axis=0) for t in terms]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
         ok, arrays = function(self, *vectors)
         for a in arrays:
@@ -819,7 +869,7 @@ class _Arrays:
         if not np.all(ok):
             for a in arrays:
                 a[:, ~ok] = np.nan
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
 
 class _Judged(_Arrays):
@@ -829,12 +879,12 @@ class _Judged(_Arrays):
         super().__init__(p, states)
         self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
         (valid, reached, clear), arrays = function(self, *vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
             self.failed[code] |= ~np.broadcast_to(good, self.states)
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -1218,9 +1268,9 @@ def _run_dynamics(m, X, V):
     omega_z = V_2
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_M = m.zeros(9)
-    out_Z = m.zeros(3)
-    out_H = m.zeros(9)
+    out_M = m.zeros("M")
+    out_Z = m.zeros("Z")
+    out_H = m.zeros("H")
     # (L3) inertia tensor about the platform origin
     J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy
     J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy
@@ -1492,9 +1542,9 @@ def _run_dynamics(m, X, V):
         sums = m.added(sums, leg, (
         M_aa_t_6, M_aa_t_7, M_aa_t_8, M_aa_t_9, M_aa_t_10, M_aa_t_11, Z_a_t, Z_a_t_2, Z_a_t_3,
         ))
-        out_H[[0, 1, 2][leg]] = H_a_3_x
-        out_H[[3, 4, 5][leg]] = H_a_3_y
-        out_H[[6, 7, 8][leg]] = H_a_3_z
+        out_H[_H_ups[0][leg]] = H_a_3_x
+        out_H[_H_ups[1][leg]] = H_a_3_y
+        out_H[_H_ups[2][leg]] = H_a_3_z
     (
     total_ups_xx, total_ups_xy, total_ups_xz, total_ups_yy, total_ups_yz, total_ups_zz,
         total_ups_x, total_ups_y, total_ups_z,
@@ -1563,7 +1613,7 @@ def _run_M(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_M = m.zeros(9)
+    out_M = m.zeros("M")
     # (L3) inertia tensor about the platform origin
     J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy
     J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy
@@ -1776,7 +1826,7 @@ def _run_Z(m, X, V):
     omega_z = V_2
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_Z = m.zeros(3)
+    out_Z = m.zeros("Z")
     # (M2) gyroscopic moment and moment of the weight of the platform
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
@@ -2014,7 +2064,7 @@ def _run_H(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_H = m.zeros(9)
+    out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
         branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
@@ -2061,9 +2111,9 @@ def _run_H(m, X):
         ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
             _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8))
         )
-        out_H[[0, 1, 2][leg]] = H_a_3_x
-        out_H[[3, 4, 5][leg]] = H_a_3_y
-        out_H[[6, 7, 8][leg]] = H_a_3_z
+        out_H[_H_ups[0][leg]] = H_a_3_x
+        out_H[_H_ups[1][leg]] = H_a_3_y
+        out_H[_H_ups[2][leg]] = H_a_3_z
     return ok, (out_H,)
 
 
@@ -2120,8 +2170,8 @@ def _run_required(m, X, V, A):
     alpha_z = A_2
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_required = m.zeros(3)
-    out_H = m.zeros(9)
+    out_required = m.zeros("required")
+    out_H = m.zeros("H")
     # (M2) gyroscopic moment and moment of the weight of the platform
     omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
@@ -2322,9 +2372,9 @@ def _run_required(m, X, V, A):
         sums = m.added(sums, leg, (
         R_a_t, R_a_t_2, R_a_t_3,
         ))
-        out_H[[0, 1, 2][leg]] = H_a_3_x
-        out_H[[3, 4, 5][leg]] = H_a_3_y
-        out_H[[6, 7, 8][leg]] = H_a_3_z
+        out_H[_H_ups[0][leg]] = H_a_3_x
+        out_H[_H_ups[1][leg]] = H_a_3_y
+        out_H[_H_ups[2][leg]] = H_a_3_z
     total_ups_x, total_ups_y, total_ups_z = sums
     # (E2) moment that actuators and external wrench must give
     R_a_x = mu_p_in_base_x - total_ups_x
@@ -2372,7 +2422,7 @@ def _run_inverse_kinematics(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_q = m.zeros(9)
+    out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
         branch_1, branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
@@ -2419,9 +2469,9 @@ def _run_inverse_kinematics(m, X):
         ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
             _TOLERANCE * _TOLERANCE * 0.6400000000000001))
         )
-        out_q[[0, 3, 6][leg]] = q_1
-        out_q[[1, 4, 7][leg]] = q_2
-        out_q[[2, 5, 8][leg]] = root_2
+        out_q[_q_ups[0][leg]] = q_1
+        out_q[_q_ups[1][leg]] = q_2
+        out_q[_q_ups[2][leg]] = root_2
     return ok, (out_q,)
 
 
@@ -2467,7 +2517,7 @@ def _run_joint_rates(m, X, V):
     omega_z = V_2
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_qd = m.zeros(9)
+    out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
         branch_1, branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
@@ -2539,9 +2589,9 @@ def _run_joint_rates(m, X, V):
             _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) > _TOLERANCE * 0.8) &
             (abs(root_2) > _TOLERANCE * 0.8))
         )
-        out_qd[[0, 3, 6][leg]] = qd_1
-        out_qd[[1, 4, 7][leg]] = qd_2
-        out_qd[[2, 5, 8][leg]] = S_dot_tip_x
+        out_qd[_qd_ups[0][leg]] = qd_1
+        out_qd[_qd_ups[1][leg]] = qd_2
+        out_qd[_qd_ups[2][leg]] = S_dot_tip_x
     return ok, (out_qd,)
 
 
@@ -2594,7 +2644,7 @@ def _run_joint_accelerations(m, X, V, A):
     alpha_z = A_2
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_qdd = m.zeros(9)
+    out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
         branch_1, branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
@@ -2698,9 +2748,9 @@ def _run_joint_accelerations(m, X, V, A):
             _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) > _TOLERANCE * 0.8) &
             (abs(root_2) > _TOLERANCE * 0.8))
         )
-        out_qdd[[0, 3, 6][leg]] = qdd_1
-        out_qdd[[1, 4, 7][leg]] = qdd_2
-        out_qdd[[2, 5, 8][leg]] = rel_x
+        out_qdd[_qdd_ups[0][leg]] = qdd_1
+        out_qdd[_qdd_ups[1][leg]] = qdd_2
+        out_qdd[_qdd_ups[2][leg]] = rel_x
     return ok, (out_qdd,)
 
 
@@ -2753,8 +2803,8 @@ def _run_legs(m, X, V, A):
     alpha_z = A_2
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_leg_force = m.zeros(9)
-    out_drive = m.zeros(9)
+    out_leg_force = m.zeros("leg_force")
+    out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
         J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
@@ -2924,12 +2974,12 @@ def _run_legs(m, X, V, A):
             _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) > _TOLERANCE * 0.8) &
             (abs(root_2) > _TOLERANCE * 0.8))
         )
-        out_leg_force[[0, 3, 6][leg]] = c_true_in_base_x
-        out_leg_force[[1, 4, 7][leg]] = c_true_in_base_y
-        out_leg_force[[2, 5, 8][leg]] = c_true_in_base_z
-        out_drive[[0, 3, 6][leg]] = axis_x_x
-        out_drive[[1, 4, 7][leg]] = axis_x_y
-        out_drive[[2, 5, 8][leg]] = axis_x_z
+        out_leg_force[_leg_force_ups[0][leg]] = c_true_in_base_x
+        out_leg_force[_leg_force_ups[1][leg]] = c_true_in_base_y
+        out_leg_force[_leg_force_ups[2][leg]] = c_true_in_base_z
+        out_drive[_drive_ups[0][leg]] = axis_x_x
+        out_drive[_drive_ups[1][leg]] = axis_x_y
+        out_drive[_drive_ups[2][leg]] = axis_x_z
     return ok, (out_leg_force, out_drive,)
 
 
@@ -2971,7 +3021,7 @@ def _run_potential(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_potential = m.zeros(1)
+    out_potential = m.zeros("potential")
     # (V1) potential energy
     potential_t_4 = (
     gravity_x*(potential_t + R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z) +
@@ -3088,10 +3138,10 @@ def _run_condition(m, X):
     reached = True
     clear = True
     valid = valid & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_H = m.zeros(9)
-    out_lengths = m.zeros(2)
-    out_pivots = m.zeros(3)
-    out_reach = m.zeros(3)
+    out_H = m.zeros("H")
+    out_lengths = m.zeros("lengths")
+    out_pivots = m.zeros("pivots")
+    out_reach = m.zeros("reach")
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
@@ -3163,10 +3213,10 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         spread_t_5,
         ))
-        out_H[[0, 1, 2][leg]] = H_a_3_x
-        out_H[[3, 4, 5][leg]] = H_a_3_y
-        out_H[[6, 7, 8][leg]] = H_a_3_z
-        out_pivots[[0, 1, 2][leg]] = least_pivots
+        out_H[_H_ups[0][leg]] = H_a_3_x
+        out_H[_H_ups[1][leg]] = H_a_3_y
+        out_H[_H_ups[2][leg]] = H_a_3_z
+        out_pivots[_pivots_ups[0][leg]] = least_pivots
     total_ups, = sums
     # (C2) rms distance of the platform points from their centroid
     spread = spread_t*sqrt(total_ups)
@@ -3179,44 +3229,42 @@ _DEFAULT = Parameters()
 
 
 def _steps_M(m, X):
-    M_of_M, = m.run(_run_M, ((3, 3),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
     return (M_of_M,)
 
 
 def _steps_Z(m, X, V):
-    Z_of_Z, = m.run(_run_Z, ((3,),), X, V)
+    Z_of_Z, = m.run(_run_Z, ("Z",), X, V)
     return (Z_of_Z,)
 
 
 def _steps_H(m, X):
-    H_of_H, = m.run(_run_H, ((3, 3),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 
 def _steps_inverse_kinematics(m, X):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((9,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     return (q_of_inverse_kinematics,)
 
 
 def _steps_joint_rates(m, X, V):
-    qd_of_joint_rates, = m.run(_run_joint_rates, ((9,),), X, V)
+    qd_of_joint_rates, = m.run(_run_joint_rates, ("qd",), X, V)
     return (qd_of_joint_rates,)
 
 
 def _steps_joint_accelerations(m, X, V, A):
-    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ((9,),), X, V, A)
+    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
     return (qdd_of_joint_accelerations,)
 
 
 def _steps_dynamics(m, X, V):
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((3, 3), (3,), (3, 3)), X, V)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
 
 
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
-    required_of_required, H_of_required = m.run(_run_required, ((3,), (3, 3)), X, V, A)
+    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     solve_3 = _solve(H_of_required, subtract_2)
@@ -3224,9 +3272,7 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((3, 3), (3,), (3, 3)), X, V)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
     extend_2 = wrench
     add_3 = times_1 + extend_2
@@ -3241,25 +3287,25 @@ def _steps_complete_acceleration(m, X, V, A, wrench):
 
 
 def _steps_leg_reactions(m, X, V, A, wrench):
-    required_of_required, H_of_required = m.run(_run_required, ((3,), (3, 3)), X, V, A)
+    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     solve_3 = _solve(H_of_required, subtract_2)
-    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ((3, 3), (3, 3)), X, V, A)
+    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
     add_forces_4 = _with_forces(leg_force_of_legs, solve_3, drive_of_legs, [0, 1, 2])
     return (add_forces_4,)
 
 
 def _steps_energy(m, X, V):
-    M_of_M, = m.run(_run_M, ((3, 3),), X)
-    potential_of_potential, = m.run(_run_potential, ((1,),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
+    potential_of_potential, = m.run(_run_potential, ("potential",), X)
     half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
     entry_2 = potential_of_potential[0]
     return (half_form_1, entry_2,)
 
 
 def _steps_null_space(m, X):
-    H_of_H, = m.run(_run_H, ((3, 3),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     null_basis_1 = _null_basis(H_of_H, 3)
     return (null_basis_1,)
 
@@ -3267,7 +3313,7 @@ def _steps_null_space(m, X):
 def _steps_condition(m, X, length):
     (
     H_of_condition, lengths_of_condition, pivots_of_condition, reach_of_condition,
-    ) = m.run(_run_condition, ((3, 3), (2,), (3,), (3,)), X)
+    ) = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
     choose_length_1 = _chosen_length(lengths_of_condition, length)
     divide_rows_2 = _rows_divided(H_of_condition, choose_length_1, [0, 1, 2])
     singular_values_3 = _singular_values(divide_rows_2)
@@ -3275,14 +3321,14 @@ def _steps_condition(m, X, length):
 
 
 def _steps_mismatch(m, X, q_actuated):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((9,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     take_1 = q_of_inverse_kinematics[[2, 5, 8]]
     subtract_2 = q_actuated - take_1
     return (subtract_2,)
 
 
 def _steps_slope(m, X):
-    H_of_H, = m.run(_run_H, ((3, 3),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 

@@ -67,6 +67,81 @@ NJ = 21
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
 
+_SHAPES = {  # of the arrays that functions give
+    "M": (6, 6),
+    "Z": (6,),
+    "H": (6, 6),
+    "required": (6,),
+    "q": (21,),
+    "qd": (21,),
+    "qdd": (21,),
+    "leg_force": (7, 3),
+    "drive": (6, 3),
+    "potential": (1,),
+    "lengths": (2,),
+    "pivots": (7,),
+    "reach": (7,),
+}
+# Where the entries of a leg type's legs stand in these arrays, row by row.
+_H_ups = (
+    [0, 1, 2, 3, 4, 5],
+    [6, 7, 8, 9, 10, 11],
+    [12, 13, 14, 15, 16, 17],
+    [18, 19, 20, 21, 22, 23],
+    [24, 25, 26, 27, 28, 29],
+    [30, 31, 32, 33, 34, 35],
+)
+_q_ups = (
+    [0, 3, 6, 9, 12, 15],
+    [1, 4, 7, 10, 13, 16],
+    [2, 5, 8, 11, 14, 17],
+)
+_q_ups2 = (
+    [18],
+    [19],
+    [20],
+)
+_qd_ups = (
+    [0, 3, 6, 9, 12, 15],
+    [1, 4, 7, 10, 13, 16],
+    [2, 5, 8, 11, 14, 17],
+)
+_qd_ups2 = (
+    [18],
+    [19],
+    [20],
+)
+_qdd_ups = (
+    [0, 3, 6, 9, 12, 15],
+    [1, 4, 7, 10, 13, 16],
+    [2, 5, 8, 11, 14, 17],
+)
+_qdd_ups2 = (
+    [18],
+    [19],
+    [20],
+)
+_leg_force_ups = (
+    [0, 3, 6, 9, 12, 15],
+    [1, 4, 7, 10, 13, 16],
+    [2, 5, 8, 11, 14, 17],
+)
+_drive_ups = (
+    [0, 3, 6, 9, 12, 15],
+    [1, 4, 7, 10, 13, 16],
+    [2, 5, 8, 11, 14, 17],
+)
+_leg_force_ups2 = (
+    [18],
+    [19],
+    [20],
+)
+_pivots_ups = (
+    [0, 1, 2, 3, 4, 5],
+)
+_pivots_ups2 = (
+    [6],
+)
 _DRIVEN_JOINTS = (2, 5, 8, 11, 14, 17)
 
 _DEFAULTS = {
@@ -446,6 +521,8 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _ups = 6
+    _ups2 = 1
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     gravity_z = p.gravity[2]
@@ -638,19 +715,19 @@ def _prepare(p):
     ups_base_frame_xz*ups_base_point_x + ups_base_frame_yz*ups_base_point_y +
         ups_base_frame_zz*ups_base_point_z
     )
-    total_ups = np.sum(np.broadcast_to(ups_link3_mass, 6))
-    total_ups_x = np.sum(np.broadcast_to(h_star_t_4, 6))
-    total_ups_y = np.sum(np.broadcast_to(h_star_t_5, 6))
-    total_ups_z = np.sum(np.broadcast_to(h_star_t_6, 6))
-    total_ups_xx = np.sum(np.broadcast_to(J_star_t_15, 6))
-    total_ups_xy = np.sum(np.broadcast_to(J_star_t_16, 6))
-    total_ups_xz = np.sum(np.broadcast_to(J_star_t_17, 6))
-    total_ups_yy = np.sum(np.broadcast_to(J_star_t_18, 6))
-    total_ups_yz = np.sum(np.broadcast_to(J_star_t_19, 6))
-    total_ups_zz = np.sum(np.broadcast_to(J_star_t_20, 6))
-    total_ups_x_2 = np.sum(np.broadcast_to(ups_platform_point_x, 6))
-    total_ups_y_2 = np.sum(np.broadcast_to(ups_platform_point_y, 6))
-    total_ups_z_2 = np.sum(np.broadcast_to(ups_platform_point_z, 6))
+    total_ups = np.sum(np.broadcast_to(ups_link3_mass, _ups))
+    total_ups_x = np.sum(np.broadcast_to(h_star_t_4, _ups))
+    total_ups_y = np.sum(np.broadcast_to(h_star_t_5, _ups))
+    total_ups_z = np.sum(np.broadcast_to(h_star_t_6, _ups))
+    total_ups_xx = np.sum(np.broadcast_to(J_star_t_15, _ups))
+    total_ups_xy = np.sum(np.broadcast_to(J_star_t_16, _ups))
+    total_ups_xz = np.sum(np.broadcast_to(J_star_t_17, _ups))
+    total_ups_yy = np.sum(np.broadcast_to(J_star_t_18, _ups))
+    total_ups_yz = np.sum(np.broadcast_to(J_star_t_19, _ups))
+    total_ups_zz = np.sum(np.broadcast_to(J_star_t_20, _ups))
+    total_ups_x_2 = np.sum(np.broadcast_to(ups_platform_point_x, _ups))
+    total_ups_y_2 = np.sum(np.broadcast_to(ups_platform_point_y, _ups))
+    total_ups_z_2 = np.sum(np.broadcast_to(ups_platform_point_z, _ups))
     # (ups2-G3) inertia tensor of link 2 about the origin of link 2
     J_2_ups2_t = ups2_link2_centre_of_mass_x*ups2_link2_centre_of_mass_x
     J_2_ups2_t_2 = ups2_link2_centre_of_mass_y*ups2_link2_centre_of_mass_y
@@ -743,19 +820,19 @@ def _prepare(p):
     ups2_base_frame_xz*ups2_base_point_x + ups2_base_frame_yz*ups2_base_point_y +
         ups2_base_frame_zz*ups2_base_point_z
     )
-    total_ups2 = np.sum(np.broadcast_to(ups2_link3_mass, 1))
-    total_ups2_x = np.sum(np.broadcast_to(h_star_t_7, 1))
-    total_ups2_y = np.sum(np.broadcast_to(h_star_t_8, 1))
-    total_ups2_z = np.sum(np.broadcast_to(h_star_t_9, 1))
-    total_ups2_xx = np.sum(np.broadcast_to(J_star_t_25, 1))
-    total_ups2_xy = np.sum(np.broadcast_to(J_star_t_26, 1))
-    total_ups2_xz = np.sum(np.broadcast_to(J_star_t_27, 1))
-    total_ups2_yy = np.sum(np.broadcast_to(J_star_t_28, 1))
-    total_ups2_yz = np.sum(np.broadcast_to(J_star_t_29, 1))
-    total_ups2_zz = np.sum(np.broadcast_to(J_star_t_30, 1))
-    total_ups2_x_2 = np.sum(np.broadcast_to(ups2_platform_point_x, 1))
-    total_ups2_y_2 = np.sum(np.broadcast_to(ups2_platform_point_y, 1))
-    total_ups2_z_2 = np.sum(np.broadcast_to(ups2_platform_point_z, 1))
+    total_ups2 = np.sum(np.broadcast_to(ups2_link3_mass, _ups2))
+    total_ups2_x = np.sum(np.broadcast_to(h_star_t_7, _ups2))
+    total_ups2_y = np.sum(np.broadcast_to(h_star_t_8, _ups2))
+    total_ups2_z = np.sum(np.broadcast_to(h_star_t_9, _ups2))
+    total_ups2_xx = np.sum(np.broadcast_to(J_star_t_25, _ups2))
+    total_ups2_xy = np.sum(np.broadcast_to(J_star_t_26, _ups2))
+    total_ups2_xz = np.sum(np.broadcast_to(J_star_t_27, _ups2))
+    total_ups2_yy = np.sum(np.broadcast_to(J_star_t_28, _ups2))
+    total_ups2_yz = np.sum(np.broadcast_to(J_star_t_29, _ups2))
+    total_ups2_zz = np.sum(np.broadcast_to(J_star_t_30, _ups2))
+    total_ups2_x_2 = np.sum(np.broadcast_to(ups2_platform_point_x, _ups2))
+    total_ups2_y_2 = np.sum(np.broadcast_to(ups2_platform_point_y, _ups2))
+    total_ups2_z_2 = np.sum(np.broadcast_to(ups2_platform_point_z, _ups2))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_ups + total_ups2
     # (L2) first moment about the platform origin
@@ -787,7 +864,7 @@ def _prepare(p):
                 J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x,
                 h_star_y, h_star_z, m_star,),
             (
-                (6,
+                (_ups,
         (J_group_2_ups_xx, J_group_2_ups_xy, J_group_2_ups_xz, J_group_2_ups_yy, J_group_2_ups_yz,
                     J_group_2_ups_zz, Sigma_2_ups_xx, Sigma_2_ups_yy, Sigma_2_ups_zz,
                     branch_1_ups, branch_2_ups, g_r0_x, g_r0_y, g_r0_z, h_2_ups_x, h_2_ups_y,
@@ -797,7 +874,7 @@ def _prepare(p):
                     ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_platform_point_x,
                     ups_platform_point_y, ups_platform_point_z,),
                 ),
-                (1,
+                (_ups2,
         (J_group_2_ups2_xx, J_group_2_ups2_xy, J_group_2_ups2_xz, J_group_2_ups2_yy,
                     J_group_2_ups2_yz, J_group_2_ups2_zz, Sigma_2_ups2_xx, Sigma_2_ups2_yy,
                     Sigma_2_ups2_zz, branch_1_ups2, branch_2_ups2, g_r0_x_2, g_r0_y_2, g_r0_z_2,
@@ -814,7 +891,7 @@ def _prepare(p):
         (J_star_t_32, J_star_t_34, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
                 h_star_z, m_star,),
             (
-                (6,
+                (_ups,
         (J_group_2_ups_xx, J_group_2_ups_xy, J_group_2_ups_xz, J_group_2_ups_yy, J_group_2_ups_yz,
                     J_group_2_ups_zz, branch_1_ups, branch_2_ups, h_3_ups_x, h_3_ups_y, h_3_ups_z,
                     ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
@@ -822,7 +899,7 @@ def _prepare(p):
                     ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
                     ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
-                (1,
+                (_ups2,
         (J_group_2_ups2_xx, J_group_2_ups2_xy, J_group_2_ups2_xz, J_group_2_ups2_yy,
                     J_group_2_ups2_yz, J_group_2_ups2_zz, branch_1_ups2, branch_2_ups2,
                     h_3_ups2_x, h_3_ups2_y, h_3_ups2_z, ups2_base_frame_xx, ups2_base_frame_xy,
@@ -837,7 +914,7 @@ def _prepare(p):
         (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2,
                 Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
             (
-                (6,
+                (_ups,
         (J_group_2_ups_xy, J_group_2_ups_xz, J_group_2_ups_yz, Sigma_2_ups_xx, Sigma_2_ups_yy,
                     Sigma_2_ups_zz, branch_1_ups, branch_2_ups, g_r0_x, g_r0_y, g_r0_z, h_2_ups_x,
                     h_2_ups_y, h_2_ups_z, h_3_ups_x, h_3_ups_y, h_3_ups_z, ups_base_frame_xx,
@@ -846,7 +923,7 @@ def _prepare(p):
                     ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_platform_point_x,
                     ups_platform_point_y, ups_platform_point_z,),
                 ),
-                (1,
+                (_ups2,
         (J_group_2_ups2_xy, J_group_2_ups2_xz, J_group_2_ups2_yz, Sigma_2_ups2_xx,
                     Sigma_2_ups2_yy, Sigma_2_ups2_zz, branch_1_ups2, branch_2_ups2, g_r0_x_2,
                     g_r0_y_2, g_r0_z_2, h_2_ups2_x, h_2_ups2_y, h_2_ups2_z, h_3_ups2_x,
@@ -861,7 +938,7 @@ def _prepare(p):
         "H": (
         (),
             (
-                (6,
+                (_ups,
         (branch_2_ups, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
                     ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
                     ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
@@ -873,7 +950,7 @@ def _prepare(p):
         (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
                 gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
-                (6,
+                (_ups,
         (J_group_2_ups_xy, J_group_2_ups_xz, J_group_2_ups_yz, Sigma_2_ups_xx, Sigma_2_ups_yy,
                     Sigma_2_ups_zz, branch_1_ups, branch_2_ups, g_r0_x, g_r0_y, g_r0_z, h_2_ups_x,
                     h_2_ups_y, h_2_ups_z, h_3_ups_x, h_3_ups_y, h_3_ups_z, ups_base_frame_xx,
@@ -882,7 +959,7 @@ def _prepare(p):
                     ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_platform_point_x,
                     ups_platform_point_y, ups_platform_point_z,),
                 ),
-                (1,
+                (_ups2,
         (J_group_2_ups2_xy, J_group_2_ups2_xz, J_group_2_ups2_yz, Sigma_2_ups2_xx,
                     Sigma_2_ups2_yy, Sigma_2_ups2_zz, branch_1_ups2, branch_2_ups2, g_r0_x_2,
                     g_r0_y_2, g_r0_z_2, h_2_ups2_x, h_2_ups2_y, h_2_ups2_z, h_3_ups2_x,
@@ -897,14 +974,14 @@ def _prepare(p):
         "inverse_kinematics": (
         (),
             (
-                (6,
+                (_ups,
         (branch_1_ups, branch_2_ups, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
                     ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
                     ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
                     ups_base_point_z, ups_platform_point_x, ups_platform_point_y,
                     ups_platform_point_z,),
                 ),
-                (1,
+                (_ups2,
         (branch_1_ups2, branch_2_ups2, ups2_base_frame_xx, ups2_base_frame_xy, ups2_base_frame_xz,
                     ups2_base_frame_yx, ups2_base_frame_yy, ups2_base_frame_yz,
                     ups2_base_frame_zx, ups2_base_frame_zy, ups2_base_frame_zz, ups2_base_point_x,
@@ -916,14 +993,14 @@ def _prepare(p):
         "joint_rates": (
         (),
             (
-                (6,
+                (_ups,
         (branch_1_ups, branch_2_ups, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
                     ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
                     ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
                     ups_base_point_z, ups_platform_point_x, ups_platform_point_y,
                     ups_platform_point_z,),
                 ),
-                (1,
+                (_ups2,
         (branch_1_ups2, branch_2_ups2, ups2_base_frame_xx, ups2_base_frame_xy, ups2_base_frame_xz,
                     ups2_base_frame_yx, ups2_base_frame_yy, ups2_base_frame_yz,
                     ups2_base_frame_zx, ups2_base_frame_zy, ups2_base_frame_zz, ups2_base_point_x,
@@ -935,14 +1012,14 @@ def _prepare(p):
         "joint_accelerations": (
         (),
             (
-                (6,
+                (_ups,
         (branch_1_ups, branch_2_ups, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
                     ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
                     ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
                     ups_base_point_z, ups_platform_point_x, ups_platform_point_y,
                     ups_platform_point_z,),
                 ),
-                (1,
+                (_ups2,
         (branch_1_ups2, branch_2_ups2, ups2_base_frame_xx, ups2_base_frame_xy, ups2_base_frame_xz,
                     ups2_base_frame_yx, ups2_base_frame_yy, ups2_base_frame_yz,
                     ups2_base_frame_zx, ups2_base_frame_zy, ups2_base_frame_zz, ups2_base_point_x,
@@ -954,7 +1031,7 @@ def _prepare(p):
         "legs": (
         (),
             (
-                (6,
+                (_ups,
         (J_group_2_ups_xy, J_group_2_ups_xz, J_group_2_ups_yz, Sigma_2_ups_xx, Sigma_2_ups_yy,
                     Sigma_2_ups_zz, branch_1_ups, branch_2_ups, g_r0_x, g_r0_y, g_r0_z, h_2_ups_x,
                     h_2_ups_y, h_2_ups_z, h_3_ups_x, h_3_ups_y, h_3_ups_z, ups_base_frame_xx,
@@ -963,7 +1040,7 @@ def _prepare(p):
                     ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_link3_mass,
                     ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
-                (1,
+                (_ups2,
         (J_group_2_ups2_xy, J_group_2_ups2_xz, J_group_2_ups2_yz, Sigma_2_ups2_xx,
                     Sigma_2_ups2_yy, Sigma_2_ups2_zz, branch_1_ups2, branch_2_ups2, g_r0_x_2,
                     g_r0_y_2, g_r0_z_2, h_2_ups2_x, h_2_ups2_y, h_2_ups2_z, h_3_ups2_x,
@@ -979,7 +1056,7 @@ def _prepare(p):
         "potential": (
         (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
-                (6,
+                (_ups,
         (b_ups_r0_x, b_ups_r0_y, b_ups_r0_z, branch_1_ups, branch_2_ups, g_r0_x, g_r0_y, g_r0_z,
                     h_2_ups_x, h_2_ups_y, h_2_ups_z, h_3_ups_x, h_3_ups_y, h_3_ups_z,
                     ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
@@ -988,7 +1065,7 @@ def _prepare(p):
                     ups_link2_mass, ups_platform_point_x, ups_platform_point_y,
                     ups_platform_point_z,),
                 ),
-                (1,
+                (_ups2,
         (b_ups2_r0_x, b_ups2_r0_y, b_ups2_r0_z, branch_1_ups2, branch_2_ups2, g_r0_x_2, g_r0_y_2,
                     g_r0_z_2, h_2_ups2_x, h_2_ups2_y, h_2_ups2_z, h_3_ups2_x, h_3_ups2_y,
                     h_3_ups2_z, ups2_base_frame_xx, ups2_base_frame_xy, ups2_base_frame_xz,
@@ -1002,14 +1079,14 @@ def _prepare(p):
         "condition": (
         (b_c_x, b_c_y, b_c_z,),
             (
-                (6,
+                (_ups,
         (branch_1_ups, branch_2_ups, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
                     ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
                     ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
                     ups_base_point_z, ups_platform_point_x, ups_platform_point_y,
                     ups_platform_point_z,),
                 ),
-                (1,
+                (_ups2,
         (branch_1_ups2, branch_2_ups2, ups2_base_frame_xx, ups2_base_frame_xy, ups2_base_frame_xz,
                     ups2_base_frame_yx, ups2_base_frame_yy, ups2_base_frame_yz,
                     ups2_base_frame_zx, ups2_base_frame_zy, ups2_base_frame_zz, ups2_base_point_x,
@@ -1058,16 +1135,16 @@ class _Floats:
         """Shared values, and (leg, its values) for every leg of each loop."""
         return _constants(self.p, name)[:2]
 
-    def zeros(self, size):
-        return [0.0] * size
+    def zeros(self, name):
+        return [0.0] * math.prod(_SHAPES[name])
 
     def added(self, sums, leg, terms):
         """Sums over the legs so far."""
         return [a + b for a, b in zip(sums, terms)]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(shape)), np.nan) for shape in shapes]
+        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
         for k in range(self.states):
             try:
@@ -1077,7 +1154,7 @@ class _Floats:
             if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
                 for a, array in zip(found, arrays):
                     a[k] = array
-        return [a.T.reshape(*shape, self.states) for a, shape in zip(found, shapes)]
+        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
 
 
 class _Arrays:
@@ -1093,8 +1170,8 @@ class _Arrays:
         shared, _, columns = _constants(self.p, name)
         return shared, columns
 
-    def zeros(self, size):
-        return np.zeros((size, self.states))
+    def zeros(self, name):
+        return np.zeros((math.prod(_SHAPES[name]), self.states))
 
     def every(self, good):
         """Whether it holds for all legs."""
@@ -1105,7 +1182,7 @@ class _Arrays:
         shape = (legs.stop, self.states)
         return [np.add.reduce(np.broadcast_to(t, shape), axis=0) for t in terms]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
         ok, arrays = function(self, *vectors)
         for a in arrays:
@@ -1113,7 +1190,7 @@ class _Arrays:
         if not np.all(ok):
             for a in arrays:
                 a[:, ~ok] = np.nan
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
 
 class _Judged(_Arrays):
@@ -1123,12 +1200,12 @@ class _Judged(_Arrays):
         super().__init__(p, states)
         self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
         (valid, reached, clear), arrays = function(self, *vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
             self.failed[code] |= ~np.broadcast_to(good, self.states)
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -1524,9 +1601,9 @@ def _run_dynamics(m, X, V):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_M = m.zeros(36)
-    out_Z = m.zeros(6)
-    out_H = m.zeros(36)
+    out_M = m.zeros("M")
+    out_Z = m.zeros("Z")
+    out_H = m.zeros("H")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -1852,12 +1929,12 @@ def _run_dynamics(m, X, V):
             M_aa_t, M_aa_t_2, M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6, U_ups_in_base_x,
             U_ups_in_base_y, U_ups_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,
         ))
-        out_H[[0, 1, 2, 3, 4, 5][leg]] = axis_x_x
-        out_H[[6, 7, 8, 9, 10, 11][leg]] = axis_x_y
-        out_H[[12, 13, 14, 15, 16, 17][leg]] = axis_x_z
-        out_H[[18, 19, 20, 21, 22, 23][leg]] = H_a_3_ups_x
-        out_H[[24, 25, 26, 27, 28, 29][leg]] = H_a_3_ups_y
-        out_H[[30, 31, 32, 33, 34, 35][leg]] = H_a_3_ups_z
+        out_H[_H_ups[0][leg]] = axis_x_x
+        out_H[_H_ups[1][leg]] = axis_x_y
+        out_H[_H_ups[2][leg]] = axis_x_z
+        out_H[_H_ups[3][leg]] = H_a_3_ups_x
+        out_H[_H_ups[4][leg]] = H_a_3_ups_y
+        out_H[_H_ups[5][leg]] = H_a_3_ups_z
     (
     total_ups_xx, total_ups_xy, total_ups_xz, total_ups_yy, total_ups_yz, total_ups_zz,
         total_ups_xx_2, total_ups_xy_2, total_ups_xz_2, total_ups_yx, total_ups_yy_2,
@@ -2274,7 +2351,7 @@ def _run_M(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_M = m.zeros(36)
+    out_M = m.zeros("M")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -2740,7 +2817,7 @@ def _run_Z(m, X, V):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_Z = m.zeros(6)
+    out_Z = m.zeros("Z")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -3229,7 +3306,7 @@ def _run_H(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_H = m.zeros(36)
+    out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
         branch_2_ups, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
@@ -3283,12 +3360,12 @@ def _run_H(m, X):
             (abs(rho2_2_ups) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_2_ups) >
             _TOLERANCE * 0.8))
         )
-        out_H[[0, 1, 2, 3, 4, 5][leg]] = axis_x_x
-        out_H[[6, 7, 8, 9, 10, 11][leg]] = axis_x_y
-        out_H[[12, 13, 14, 15, 16, 17][leg]] = axis_x_z
-        out_H[[18, 19, 20, 21, 22, 23][leg]] = H_a_3_ups_x
-        out_H[[24, 25, 26, 27, 28, 29][leg]] = H_a_3_ups_y
-        out_H[[30, 31, 32, 33, 34, 35][leg]] = H_a_3_ups_z
+        out_H[_H_ups[0][leg]] = axis_x_x
+        out_H[_H_ups[1][leg]] = axis_x_y
+        out_H[_H_ups[2][leg]] = axis_x_z
+        out_H[_H_ups[3][leg]] = H_a_3_ups_x
+        out_H[_H_ups[4][leg]] = H_a_3_ups_y
+        out_H[_H_ups[5][leg]] = H_a_3_ups_z
     return ok, (out_H,)
 
 
@@ -3362,8 +3439,8 @@ def _run_required(m, X, V, A):
     alpha_z = A_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_required = m.zeros(6)
-    out_H = m.zeros(36)
+    out_required = m.zeros("required")
+    out_H = m.zeros("H")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -3623,12 +3700,12 @@ def _run_required(m, X, V, A):
         sums = m.added(sums, leg, (
         c_ups_in_base_x, c_ups_in_base_y, c_ups_in_base_z, R_a_t, R_a_t_2, R_a_t_3,
         ))
-        out_H[[0, 1, 2, 3, 4, 5][leg]] = axis_x_x
-        out_H[[6, 7, 8, 9, 10, 11][leg]] = axis_x_y
-        out_H[[12, 13, 14, 15, 16, 17][leg]] = axis_x_z
-        out_H[[18, 19, 20, 21, 22, 23][leg]] = H_a_3_ups_x
-        out_H[[24, 25, 26, 27, 28, 29][leg]] = H_a_3_ups_y
-        out_H[[30, 31, 32, 33, 34, 35][leg]] = H_a_3_ups_z
+        out_H[_H_ups[0][leg]] = axis_x_x
+        out_H[_H_ups[1][leg]] = axis_x_y
+        out_H[_H_ups[2][leg]] = axis_x_z
+        out_H[_H_ups[3][leg]] = H_a_3_ups_x
+        out_H[_H_ups[4][leg]] = H_a_3_ups_y
+        out_H[_H_ups[5][leg]] = H_a_3_ups_z
     total_ups_x, total_ups_y, total_ups_z, total_ups_x_2, total_ups_y_2, total_ups_z_2 = sums
     sums = [0.0] * 6
     for leg, k in legs[1]:
@@ -3896,7 +3973,7 @@ def _run_inverse_kinematics(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_q = m.zeros(21)
+    out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
         branch_1_ups, branch_2_ups, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
@@ -3949,9 +4026,9 @@ def _run_inverse_kinematics(m, X):
         ok & m.every((abs(rho2_1_ups) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(rho2_2_ups) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
         )
-        out_q[[0, 3, 6, 9, 12, 15][leg]] = q_1_ups
-        out_q[[1, 4, 7, 10, 13, 16][leg]] = q_2_ups
-        out_q[[2, 5, 8, 11, 14, 17][leg]] = root_2_ups
+        out_q[_q_ups[0][leg]] = q_1_ups
+        out_q[_q_ups[1][leg]] = q_2_ups
+        out_q[_q_ups[2][leg]] = root_2_ups
     for leg, k in legs[1]:
         (
         branch_1_ups2, branch_2_ups2, ups2_base_frame_xx, ups2_base_frame_xy, ups2_base_frame_xz,
@@ -4005,9 +4082,9 @@ def _run_inverse_kinematics(m, X):
         ok & m.every((abs(rho2_1_ups2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(rho2_2_ups2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
         )
-        out_q[[18][leg]] = q_1_ups2
-        out_q[[19][leg]] = q_2_ups2
-        out_q[[20][leg]] = root_2_ups2
+        out_q[_q_ups2[0][leg]] = q_1_ups2
+        out_q[_q_ups2[1][leg]] = q_2_ups2
+        out_q[_q_ups2[2][leg]] = root_2_ups2
     return ok, (out_q,)
 
 
@@ -4064,7 +4141,7 @@ def _run_joint_rates(m, X, V):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_qd = m.zeros(21)
+    out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
         branch_1_ups, branch_2_ups, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
@@ -4143,9 +4220,9 @@ def _run_joint_rates(m, X, V):
             (abs(rho2_2_ups) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1_ups) >
             _TOLERANCE * 0.8) & (abs(root_2_ups) > _TOLERANCE * 0.8))
         )
-        out_qd[[0, 3, 6, 9, 12, 15][leg]] = qd_1_ups
-        out_qd[[1, 4, 7, 10, 13, 16][leg]] = qd_2_ups
-        out_qd[[2, 5, 8, 11, 14, 17][leg]] = S_dot_ups_tip_x
+        out_qd[_qd_ups[0][leg]] = qd_1_ups
+        out_qd[_qd_ups[1][leg]] = qd_2_ups
+        out_qd[_qd_ups[2][leg]] = S_dot_ups_tip_x
     for leg, k in legs[1]:
         (
         branch_1_ups2, branch_2_ups2, ups2_base_frame_xx, ups2_base_frame_xy, ups2_base_frame_xz,
@@ -4227,9 +4304,9 @@ def _run_joint_rates(m, X, V):
             (abs(rho2_2_ups2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1_ups2)
             > _TOLERANCE * 0.8) & (abs(root_2_ups2) > _TOLERANCE * 0.8))
         )
-        out_qd[[18][leg]] = qd_1_ups2
-        out_qd[[19][leg]] = qd_2_ups2
-        out_qd[[20][leg]] = S_dot_ups2_tip_x
+        out_qd[_qd_ups2[0][leg]] = qd_1_ups2
+        out_qd[_qd_ups2[1][leg]] = qd_2_ups2
+        out_qd[_qd_ups2[2][leg]] = S_dot_ups2_tip_x
     return ok, (out_qd,)
 
 
@@ -4299,7 +4376,7 @@ def _run_joint_accelerations(m, X, V, A):
     alpha_z = A_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_qdd = m.zeros(21)
+    out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
         branch_1_ups, branch_2_ups, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
@@ -4415,9 +4492,9 @@ def _run_joint_accelerations(m, X, V, A):
             (abs(rho2_2_ups) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1_ups) >
             _TOLERANCE * 0.8) & (abs(root_2_ups) > _TOLERANCE * 0.8))
         )
-        out_qdd[[0, 3, 6, 9, 12, 15][leg]] = qdd_1_ups
-        out_qdd[[1, 4, 7, 10, 13, 16][leg]] = qdd_2_ups
-        out_qdd[[2, 5, 8, 11, 14, 17][leg]] = rel_ups_x
+        out_qdd[_qdd_ups[0][leg]] = qdd_1_ups
+        out_qdd[_qdd_ups[1][leg]] = qdd_2_ups
+        out_qdd[_qdd_ups[2][leg]] = rel_ups_x
     for leg, k in legs[1]:
         (
         branch_1_ups2, branch_2_ups2, ups2_base_frame_xx, ups2_base_frame_xy, ups2_base_frame_xz,
@@ -4537,9 +4614,9 @@ def _run_joint_accelerations(m, X, V, A):
             (abs(rho2_2_ups2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1_ups2)
             > _TOLERANCE * 0.8) & (abs(root_2_ups2) > _TOLERANCE * 0.8))
         )
-        out_qdd[[18][leg]] = qdd_1_ups2
-        out_qdd[[19][leg]] = qdd_2_ups2
-        out_qdd[[20][leg]] = rel_ups2_x
+        out_qdd[_qdd_ups2[0][leg]] = qdd_1_ups2
+        out_qdd[_qdd_ups2[1][leg]] = qdd_2_ups2
+        out_qdd[_qdd_ups2[2][leg]] = rel_ups2_x
     return ok, (out_qdd,)
 
 
@@ -4609,8 +4686,8 @@ def _run_legs(m, X, V, A):
     alpha_z = A_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_leg_force = m.zeros(21)
-    out_drive = m.zeros(18)
+    out_leg_force = m.zeros("leg_force")
+    out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
         J_group_2_ups_xy, J_group_2_ups_xz, J_group_2_ups_yz, Sigma_2_ups_xx, Sigma_2_ups_yy,
@@ -4806,12 +4883,12 @@ def _run_legs(m, X, V, A):
             (abs(rho2_2_ups) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1_ups) >
             _TOLERANCE * 0.8) & (abs(root_2_ups) > _TOLERANCE * 0.8))
         )
-        out_leg_force[[0, 3, 6, 9, 12, 15][leg]] = c_true_ups_in_base_x
-        out_leg_force[[1, 4, 7, 10, 13, 16][leg]] = c_true_ups_in_base_y
-        out_leg_force[[2, 5, 8, 11, 14, 17][leg]] = c_true_ups_in_base_z
-        out_drive[[0, 3, 6, 9, 12, 15][leg]] = axis_x_x
-        out_drive[[1, 4, 7, 10, 13, 16][leg]] = axis_x_y
-        out_drive[[2, 5, 8, 11, 14, 17][leg]] = axis_x_z
+        out_leg_force[_leg_force_ups[0][leg]] = c_true_ups_in_base_x
+        out_leg_force[_leg_force_ups[1][leg]] = c_true_ups_in_base_y
+        out_leg_force[_leg_force_ups[2][leg]] = c_true_ups_in_base_z
+        out_drive[_drive_ups[0][leg]] = axis_x_x
+        out_drive[_drive_ups[1][leg]] = axis_x_y
+        out_drive[_drive_ups[2][leg]] = axis_x_z
     for leg, k in legs[1]:
         (
         J_group_2_ups2_xy, J_group_2_ups2_xz, J_group_2_ups2_yz, Sigma_2_ups2_xx, Sigma_2_ups2_yy,
@@ -5011,9 +5088,9 @@ def _run_legs(m, X, V, A):
             (abs(rho2_2_ups2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1_ups2)
             > _TOLERANCE * 0.8) & (abs(root_2_ups2) > _TOLERANCE * 0.8))
         )
-        out_leg_force[[18][leg]] = c_true_ups2_in_base_x
-        out_leg_force[[19][leg]] = c_true_ups2_in_base_y
-        out_leg_force[[20][leg]] = c_true_ups2_in_base_z
+        out_leg_force[_leg_force_ups2[0][leg]] = c_true_ups2_in_base_x
+        out_leg_force[_leg_force_ups2[1][leg]] = c_true_ups2_in_base_y
+        out_leg_force[_leg_force_ups2[2][leg]] = c_true_ups2_in_base_z
     return ok, (out_leg_force, out_drive,)
 
 
@@ -5058,7 +5135,7 @@ def _run_potential(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_potential = m.zeros(1)
+    out_potential = m.zeros("potential")
     # (V1) potential energy
     potential_t = (
     gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + m_star*t_x) +
@@ -5259,10 +5336,10 @@ def _run_condition(m, X):
     reached = True
     clear = True
     valid = valid & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_H = m.zeros(36)
-    out_lengths = m.zeros(2)
-    out_pivots = m.zeros(7)
-    out_reach = m.zeros(7)
+    out_H = m.zeros("H")
+    out_lengths = m.zeros("lengths")
+    out_pivots = m.zeros("pivots")
+    out_reach = m.zeros("reach")
     out_lengths[1] = 0.8
     sums = [0.0] * 1
     for leg, k in legs[0]:
@@ -5340,13 +5417,13 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         spread_t_4,
         ))
-        out_H[[0, 1, 2, 3, 4, 5][leg]] = axis_x_x
-        out_H[[6, 7, 8, 9, 10, 11][leg]] = axis_x_y
-        out_H[[12, 13, 14, 15, 16, 17][leg]] = axis_x_z
-        out_H[[18, 19, 20, 21, 22, 23][leg]] = H_a_3_ups_x
-        out_H[[24, 25, 26, 27, 28, 29][leg]] = H_a_3_ups_y
-        out_H[[30, 31, 32, 33, 34, 35][leg]] = H_a_3_ups_z
-        out_pivots[[0, 1, 2, 3, 4, 5][leg]] = least_pivots
+        out_H[_H_ups[0][leg]] = axis_x_x
+        out_H[_H_ups[1][leg]] = axis_x_y
+        out_H[_H_ups[2][leg]] = axis_x_z
+        out_H[_H_ups[3][leg]] = H_a_3_ups_x
+        out_H[_H_ups[4][leg]] = H_a_3_ups_y
+        out_H[_H_ups[5][leg]] = H_a_3_ups_z
+        out_pivots[_pivots_ups[0][leg]] = least_pivots
     total_ups, = sums
     sums = [0.0] * 1
     for leg, k in legs[1]:
@@ -5415,7 +5492,7 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         spread_t_8,
         ))
-        out_pivots[[6][leg]] = least_pivots_2
+        out_pivots[_pivots_ups2[0][leg]] = least_pivots_2
     total_ups2, = sums
     # (C2) rms distance of the platform points from their centroid
     spread = sqrt(0.14285714285714285*total_ups + 0.14285714285714285*total_ups2)
@@ -5428,44 +5505,42 @@ _DEFAULT = Parameters()
 
 
 def _steps_M(m, X):
-    M_of_M, = m.run(_run_M, ((6, 6),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
     return (M_of_M,)
 
 
 def _steps_Z(m, X, V):
-    Z_of_Z, = m.run(_run_Z, ((6,),), X, V)
+    Z_of_Z, = m.run(_run_Z, ("Z",), X, V)
     return (Z_of_Z,)
 
 
 def _steps_H(m, X):
-    H_of_H, = m.run(_run_H, ((6, 6),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 
 def _steps_inverse_kinematics(m, X):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((21,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     return (q_of_inverse_kinematics,)
 
 
 def _steps_joint_rates(m, X, V):
-    qd_of_joint_rates, = m.run(_run_joint_rates, ((21,),), X, V)
+    qd_of_joint_rates, = m.run(_run_joint_rates, ("qd",), X, V)
     return (qd_of_joint_rates,)
 
 
 def _steps_joint_accelerations(m, X, V, A):
-    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ((21,),), X, V, A)
+    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
     return (qdd_of_joint_accelerations,)
 
 
 def _steps_dynamics(m, X, V):
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((6, 6), (6,), (6, 6)), X, V)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
 
 
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
-    required_of_required, H_of_required = m.run(_run_required, ((6,), (6, 6)), X, V, A)
+    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     solve_3 = _solve(H_of_required, subtract_2)
@@ -5473,9 +5548,7 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((6, 6), (6,), (6, 6)), X, V)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
     extend_2 = wrench
     add_3 = times_1 + extend_2
@@ -5490,25 +5563,25 @@ def _steps_complete_acceleration(m, X, V, A, wrench):
 
 
 def _steps_leg_reactions(m, X, V, A, wrench):
-    required_of_required, H_of_required = m.run(_run_required, ((6,), (6, 6)), X, V, A)
+    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     solve_3 = _solve(H_of_required, subtract_2)
-    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ((7, 3), (6, 3)), X, V, A)
+    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
     add_forces_4 = _with_forces(leg_force_of_legs, solve_3, drive_of_legs, [0, 1, 2, 3, 4, 5])
     return (add_forces_4,)
 
 
 def _steps_energy(m, X, V):
-    M_of_M, = m.run(_run_M, ((6, 6),), X)
-    potential_of_potential, = m.run(_run_potential, ((1,),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
+    potential_of_potential, = m.run(_run_potential, ("potential",), X)
     half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
     entry_2 = potential_of_potential[0]
     return (half_form_1, entry_2,)
 
 
 def _steps_null_space(m, X):
-    H_of_H, = m.run(_run_H, ((6, 6),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     null_basis_1 = _null_basis(H_of_H, 6)
     return (null_basis_1,)
 
@@ -5516,7 +5589,7 @@ def _steps_null_space(m, X):
 def _steps_condition(m, X, length):
     (
     H_of_condition, lengths_of_condition, pivots_of_condition, reach_of_condition,
-    ) = m.run(_run_condition, ((6, 6), (2,), (7,), (7,)), X)
+    ) = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
     choose_length_1 = _chosen_length(lengths_of_condition, length)
     divide_rows_2 = _rows_divided(H_of_condition, choose_length_1, [3, 4, 5])
     singular_values_3 = _singular_values(divide_rows_2)
@@ -5524,14 +5597,14 @@ def _steps_condition(m, X, length):
 
 
 def _steps_mismatch(m, X, q_actuated):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((21,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     take_1 = q_of_inverse_kinematics[[2, 5, 8, 11, 14, 17]]
     subtract_2 = q_actuated - take_1
     return (subtract_2,)
 
 
 def _steps_slope(m, X):
-    H_of_H, = m.run(_run_H, ((6, 6),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 

@@ -67,6 +67,82 @@ NJ = 24
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
 
+_SHAPES = {  # of the arrays that functions give
+    "M": (12, 12),
+    "Z": (12,),
+    "H": (12, 6),
+    "required": (12,),
+    "q": (24,),
+    "qd": (24,),
+    "qdd": (24,),
+    "leg_force": (6, 3),
+    "drive": (6, 3),
+    "potential": (1,),
+    "lengths": (2,),
+    "pivots": (6,),
+    "reach": (6,),
+}
+# Where the entries of a leg type's legs stand in these arrays, row by row.
+_Z_urps = (
+    [6, 7, 8, 9, 10, 11],
+)
+_M_urps = (
+    [72, 84, 96, 108, 120, 132],
+    [6, 7, 8, 9, 10, 11],
+    [73, 85, 97, 109, 121, 133],
+    [18, 19, 20, 21, 22, 23],
+    [74, 86, 98, 110, 122, 134],
+    [30, 31, 32, 33, 34, 35],
+    [75, 87, 99, 111, 123, 135],
+    [42, 43, 44, 45, 46, 47],
+    [76, 88, 100, 112, 124, 136],
+    [54, 55, 56, 57, 58, 59],
+    [77, 89, 101, 113, 125, 137],
+    [66, 67, 68, 69, 70, 71],
+    [78, 91, 104, 117, 130, 143],
+)
+_H_urps = (
+    [0, 1, 2, 3, 4, 5],
+    [6, 7, 8, 9, 10, 11],
+    [12, 13, 14, 15, 16, 17],
+    [18, 19, 20, 21, 22, 23],
+    [24, 25, 26, 27, 28, 29],
+    [30, 31, 32, 33, 34, 35],
+)
+_required_urps = (
+    [6, 7, 8, 9, 10, 11],
+)
+_q_urps = (
+    [0, 4, 8, 12, 16, 20],
+    [1, 5, 9, 13, 17, 21],
+    [2, 6, 10, 14, 18, 22],
+    [3, 7, 11, 15, 19, 23],
+)
+_qd_urps = (
+    [0, 4, 8, 12, 16, 20],
+    [1, 5, 9, 13, 17, 21],
+    [2, 6, 10, 14, 18, 22],
+    [3, 7, 11, 15, 19, 23],
+)
+_qdd_urps = (
+    [0, 4, 8, 12, 16, 20],
+    [1, 5, 9, 13, 17, 21],
+    [2, 6, 10, 14, 18, 22],
+    [3, 7, 11, 15, 19, 23],
+)
+_leg_force_urps = (
+    [0, 3, 6, 9, 12, 15],
+    [1, 4, 7, 10, 13, 16],
+    [2, 5, 8, 11, 14, 17],
+)
+_drive_urps = (
+    [0, 3, 6, 9, 12, 15],
+    [1, 4, 7, 10, 13, 16],
+    [2, 5, 8, 11, 14, 17],
+)
+_pivots_urps = (
+    [0, 1, 2, 3, 4, 5],
+)
 _DRIVEN_JOINTS = (3, 7, 11, 15, 19, 23)
 
 _DEFAULTS = {
@@ -399,6 +475,7 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _urps = 6
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     gravity_z = p.gravity[2]
@@ -557,19 +634,19 @@ def _prepare(p):
     urps_base_frame_xz*urps_base_point_x + urps_base_frame_yz*urps_base_point_y +
         urps_base_frame_zz*urps_base_point_z
     )
-    total_urps = np.sum(np.broadcast_to(urps_link4_mass, 6))
-    total_urps_x = np.sum(np.broadcast_to(h_star_t_4, 6))
-    total_urps_y = np.sum(np.broadcast_to(h_star_t_5, 6))
-    total_urps_z = np.sum(np.broadcast_to(h_star_t_6, 6))
-    total_urps_xx = np.sum(np.broadcast_to(J_star_t_15, 6))
-    total_urps_xy = np.sum(np.broadcast_to(J_star_t_16, 6))
-    total_urps_xz = np.sum(np.broadcast_to(J_star_t_17, 6))
-    total_urps_yy = np.sum(np.broadcast_to(J_star_t_18, 6))
-    total_urps_yz = np.sum(np.broadcast_to(J_star_t_19, 6))
-    total_urps_zz = np.sum(np.broadcast_to(J_star_t_20, 6))
-    total_urps_x_2 = np.sum(np.broadcast_to(urps_platform_point_x, 6))
-    total_urps_y_2 = np.sum(np.broadcast_to(urps_platform_point_y, 6))
-    total_urps_z_2 = np.sum(np.broadcast_to(urps_platform_point_z, 6))
+    total_urps = np.sum(np.broadcast_to(urps_link4_mass, _urps))
+    total_urps_x = np.sum(np.broadcast_to(h_star_t_4, _urps))
+    total_urps_y = np.sum(np.broadcast_to(h_star_t_5, _urps))
+    total_urps_z = np.sum(np.broadcast_to(h_star_t_6, _urps))
+    total_urps_xx = np.sum(np.broadcast_to(J_star_t_15, _urps))
+    total_urps_xy = np.sum(np.broadcast_to(J_star_t_16, _urps))
+    total_urps_xz = np.sum(np.broadcast_to(J_star_t_17, _urps))
+    total_urps_yy = np.sum(np.broadcast_to(J_star_t_18, _urps))
+    total_urps_yz = np.sum(np.broadcast_to(J_star_t_19, _urps))
+    total_urps_zz = np.sum(np.broadcast_to(J_star_t_20, _urps))
+    total_urps_x_2 = np.sum(np.broadcast_to(urps_platform_point_x, _urps))
+    total_urps_y_2 = np.sum(np.broadcast_to(urps_platform_point_y, _urps))
+    total_urps_z_2 = np.sum(np.broadcast_to(urps_platform_point_z, _urps))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_urps
     # (L2) first moment about the platform origin
@@ -601,7 +678,7 @@ def _prepare(p):
                 J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x,
                 h_star_y, h_star_z, m_star,),
             (
-                (6,
+                (_urps,
         (J_group_3_xx, J_group_3_xy, J_group_3_xz, J_group_3_yy, J_group_3_yz, J_group_3_zz,
                     Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1, branch_2, h_3_x, h_3_y, h_3_z,
                     h_4_x, h_4_y, h_4_z, urps_base_frame_xx, urps_base_frame_xy,
@@ -616,7 +693,7 @@ def _prepare(p):
         (J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
                 h_star_z, m_star,),
             (
-                (6,
+                (_urps,
         (J_group_3_xx, J_group_3_xy, J_group_3_xz, J_group_3_yy, J_group_3_yz, J_group_3_zz,
                     branch_1, branch_2, h_4_x, h_4_y, h_4_z, urps_base_frame_xx,
                     urps_base_frame_xy, urps_base_frame_xz, urps_base_frame_yx,
@@ -631,7 +708,7 @@ def _prepare(p):
         (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2,
                 Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
             (
-                (6,
+                (_urps,
         (J_group_3_xy, J_group_3_xz, J_group_3_yz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1,
                     branch_2, h_3_x, h_3_y, h_3_z, h_4_x, h_4_y, h_4_z, urps_base_frame_xx,
                     urps_base_frame_xy, urps_base_frame_xz, urps_base_frame_yx,
@@ -645,7 +722,7 @@ def _prepare(p):
         "H": (
         (),
             (
-                (6,
+                (_urps,
         (branch_2, urps_base_frame_xx, urps_base_frame_xy, urps_base_frame_xz, urps_base_frame_yx,
                     urps_base_frame_yy, urps_base_frame_yz, urps_base_frame_zx,
                     urps_base_frame_zy, urps_base_frame_zz, urps_base_point_x, urps_base_point_y,
@@ -658,7 +735,7 @@ def _prepare(p):
         (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
                 gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
-                (6,
+                (_urps,
         (J_group_3_xy, J_group_3_xz, J_group_3_yz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1,
                     branch_2, h_3_x, h_3_y, h_3_z, h_4_x, h_4_y, h_4_z, urps_base_frame_xx,
                     urps_base_frame_xy, urps_base_frame_xz, urps_base_frame_yx,
@@ -672,7 +749,7 @@ def _prepare(p):
         "inverse_kinematics": (
         (),
             (
-                (6,
+                (_urps,
         (branch_1, branch_2, urps_base_frame_xx, urps_base_frame_xy, urps_base_frame_xz,
                     urps_base_frame_yx, urps_base_frame_yy, urps_base_frame_yz,
                     urps_base_frame_zx, urps_base_frame_zy, urps_base_frame_zz, urps_base_point_x,
@@ -684,7 +761,7 @@ def _prepare(p):
         "joint_rates": (
         (),
             (
-                (6,
+                (_urps,
         (branch_1, branch_2, urps_base_frame_xx, urps_base_frame_xy, urps_base_frame_xz,
                     urps_base_frame_yx, urps_base_frame_yy, urps_base_frame_yz,
                     urps_base_frame_zx, urps_base_frame_zy, urps_base_frame_zz, urps_base_point_x,
@@ -696,7 +773,7 @@ def _prepare(p):
         "joint_accelerations": (
         (),
             (
-                (6,
+                (_urps,
         (branch_1, branch_2, urps_base_frame_xx, urps_base_frame_xy, urps_base_frame_xz,
                     urps_base_frame_yx, urps_base_frame_yy, urps_base_frame_yz,
                     urps_base_frame_zx, urps_base_frame_zy, urps_base_frame_zz, urps_base_point_x,
@@ -708,7 +785,7 @@ def _prepare(p):
         "legs": (
         (gravity_x, gravity_y, gravity_z,),
             (
-                (6,
+                (_urps,
         (J_group_3_xy, J_group_3_xz, J_group_3_yz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1,
                     branch_2, h_3_x, h_3_y, h_3_z, h_4_x, h_4_y, h_4_z, urps_base_frame_xx,
                     urps_base_frame_xy, urps_base_frame_xz, urps_base_frame_yx,
@@ -722,7 +799,7 @@ def _prepare(p):
         "potential": (
         (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
-                (6,
+                (_urps,
         (b_r0_x, b_r0_y, b_r0_z, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_3_x, h_3_y, h_3_z,
                     h_4_x, h_4_y, h_4_z, urps_base_frame_xx, urps_base_frame_xy,
                     urps_base_frame_xz, urps_base_frame_yx, urps_base_frame_yy,
@@ -736,7 +813,7 @@ def _prepare(p):
         "condition": (
         (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
             (
-                (6,
+                (_urps,
         (branch_1, branch_2, urps_base_frame_xx, urps_base_frame_xy, urps_base_frame_xz,
                     urps_base_frame_yx, urps_base_frame_yy, urps_base_frame_yz,
                     urps_base_frame_zx, urps_base_frame_zy, urps_base_frame_zz, urps_base_point_x,
@@ -785,16 +862,16 @@ class _Floats:
         """Shared values, and (leg, its values) for every leg of each loop."""
         return _constants(self.p, name)[:2]
 
-    def zeros(self, size):
-        return [0.0] * size
+    def zeros(self, name):
+        return [0.0] * math.prod(_SHAPES[name])
 
     def added(self, sums, leg, terms):
         """Sums over the legs so far."""
         return [a + b for a, b in zip(sums, terms)]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(shape)), np.nan) for shape in shapes]
+        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
         for k in range(self.states):
             try:
@@ -804,7 +881,7 @@ class _Floats:
             if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
                 for a, array in zip(found, arrays):
                     a[k] = array
-        return [a.T.reshape(*shape, self.states) for a, shape in zip(found, shapes)]
+        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
 
 
 class _Arrays:
@@ -820,8 +897,8 @@ class _Arrays:
         shared, _, columns = _constants(self.p, name)
         return shared, columns
 
-    def zeros(self, size):
-        return np.zeros((size, self.states))
+    def zeros(self, name):
+        return np.zeros((math.prod(_SHAPES[name]), self.states))
 
     def every(self, good):
         """Whether it holds for all legs."""
@@ -832,7 +909,7 @@ class _Arrays:
         shape = (legs.stop, self.states)
         return [np.add.reduce(np.broadcast_to(t, shape), axis=0) for t in terms]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
         ok, arrays = function(self, *vectors)
         for a in arrays:
@@ -840,7 +917,7 @@ class _Arrays:
         if not np.all(ok):
             for a in arrays:
                 a[:, ~ok] = np.nan
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
 
 class _Judged(_Arrays):
@@ -850,12 +927,12 @@ class _Judged(_Arrays):
         super().__init__(p, states)
         self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
         (valid, reached, clear), arrays = function(self, *vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
             self.failed[code] |= ~np.broadcast_to(good, self.states)
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -1272,9 +1349,9 @@ def _run_dynamics(m, X, V):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_M = m.zeros(144)
-    out_Z = m.zeros(12)
-    out_H = m.zeros(72)
+    out_M = m.zeros("M")
+    out_Z = m.zeros("Z")
+    out_H = m.zeros("H")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -1670,26 +1747,26 @@ def _run_dynamics(m, X, V):
             M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6, U_in_base_x, U_in_base_y, U_in_base_z,
             Z_a_t, Z_a_t_2, Z_a_t_3,
         ))
-        out_Z[[6, 7, 8, 9, 10, 11][leg]] = mu_3_o_z
-        out_M[[72, 84, 96, 108, 120, 132][leg]] = d_P_3_in_base_x
-        out_M[[6, 7, 8, 9, 10, 11][leg]] = d_P_3_in_base_x
-        out_M[[73, 85, 97, 109, 121, 133][leg]] = d_P_3_in_base_y
-        out_M[[18, 19, 20, 21, 22, 23][leg]] = d_P_3_in_base_y
-        out_M[[74, 86, 98, 110, 122, 134][leg]] = d_P_3_in_base_z
-        out_M[[30, 31, 32, 33, 34, 35][leg]] = d_P_3_in_base_z
-        out_M[[75, 87, 99, 111, 123, 135][leg]] = M_ya_3_x
-        out_M[[42, 43, 44, 45, 46, 47][leg]] = M_ya_3_x
-        out_M[[76, 88, 100, 112, 124, 136][leg]] = M_ya_3_y
-        out_M[[54, 55, 56, 57, 58, 59][leg]] = M_ya_3_y
-        out_M[[77, 89, 101, 113, 125, 137][leg]] = M_ya_3_z
-        out_M[[66, 67, 68, 69, 70, 71][leg]] = M_ya_3_z
-        out_M[[78, 91, 104, 117, 130, 143][leg]] = J_group_3_zz
-        out_H[[0, 1, 2, 3, 4, 5][leg]] = axis_z_x
-        out_H[[6, 7, 8, 9, 10, 11][leg]] = axis_z_y
-        out_H[[12, 13, 14, 15, 16, 17][leg]] = axis_z_z
-        out_H[[18, 19, 20, 21, 22, 23][leg]] = H_a_4_x
-        out_H[[24, 25, 26, 27, 28, 29][leg]] = H_a_4_y
-        out_H[[30, 31, 32, 33, 34, 35][leg]] = H_a_4_z
+        out_Z[_Z_urps[0][leg]] = mu_3_o_z
+        out_M[_M_urps[0][leg]] = d_P_3_in_base_x
+        out_M[_M_urps[1][leg]] = d_P_3_in_base_x
+        out_M[_M_urps[2][leg]] = d_P_3_in_base_y
+        out_M[_M_urps[3][leg]] = d_P_3_in_base_y
+        out_M[_M_urps[4][leg]] = d_P_3_in_base_z
+        out_M[_M_urps[5][leg]] = d_P_3_in_base_z
+        out_M[_M_urps[6][leg]] = M_ya_3_x
+        out_M[_M_urps[7][leg]] = M_ya_3_x
+        out_M[_M_urps[8][leg]] = M_ya_3_y
+        out_M[_M_urps[9][leg]] = M_ya_3_y
+        out_M[_M_urps[10][leg]] = M_ya_3_z
+        out_M[_M_urps[11][leg]] = M_ya_3_z
+        out_M[_M_urps[12][leg]] = J_group_3_zz
+        out_H[_H_urps[0][leg]] = axis_z_x
+        out_H[_H_urps[1][leg]] = axis_z_y
+        out_H[_H_urps[2][leg]] = axis_z_z
+        out_H[_H_urps[3][leg]] = H_a_4_x
+        out_H[_H_urps[4][leg]] = H_a_4_y
+        out_H[_H_urps[5][leg]] = H_a_4_z
     (
     total_urps_xx, total_urps_xy, total_urps_xz, total_urps_yy, total_urps_yz, total_urps_zz,
         total_urps_xx_2, total_urps_xy_2, total_urps_xz_2, total_urps_yx, total_urps_yy_2,
@@ -1814,7 +1891,7 @@ def _run_M(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_M = m.zeros(144)
+    out_M = m.zeros("M")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -2041,19 +2118,19 @@ def _run_M(m, X):
             M_ta_t_6, M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2,
             M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6,
         ))
-        out_M[[72, 84, 96, 108, 120, 132][leg]] = d_P_3_in_base_x
-        out_M[[6, 7, 8, 9, 10, 11][leg]] = d_P_3_in_base_x
-        out_M[[73, 85, 97, 109, 121, 133][leg]] = d_P_3_in_base_y
-        out_M[[18, 19, 20, 21, 22, 23][leg]] = d_P_3_in_base_y
-        out_M[[74, 86, 98, 110, 122, 134][leg]] = d_P_3_in_base_z
-        out_M[[30, 31, 32, 33, 34, 35][leg]] = d_P_3_in_base_z
-        out_M[[75, 87, 99, 111, 123, 135][leg]] = M_ya_3_x
-        out_M[[42, 43, 44, 45, 46, 47][leg]] = M_ya_3_x
-        out_M[[76, 88, 100, 112, 124, 136][leg]] = M_ya_3_y
-        out_M[[54, 55, 56, 57, 58, 59][leg]] = M_ya_3_y
-        out_M[[77, 89, 101, 113, 125, 137][leg]] = M_ya_3_z
-        out_M[[66, 67, 68, 69, 70, 71][leg]] = M_ya_3_z
-        out_M[[78, 91, 104, 117, 130, 143][leg]] = J_group_3_zz
+        out_M[_M_urps[0][leg]] = d_P_3_in_base_x
+        out_M[_M_urps[1][leg]] = d_P_3_in_base_x
+        out_M[_M_urps[2][leg]] = d_P_3_in_base_y
+        out_M[_M_urps[3][leg]] = d_P_3_in_base_y
+        out_M[_M_urps[4][leg]] = d_P_3_in_base_z
+        out_M[_M_urps[5][leg]] = d_P_3_in_base_z
+        out_M[_M_urps[6][leg]] = M_ya_3_x
+        out_M[_M_urps[7][leg]] = M_ya_3_x
+        out_M[_M_urps[8][leg]] = M_ya_3_y
+        out_M[_M_urps[9][leg]] = M_ya_3_y
+        out_M[_M_urps[10][leg]] = M_ya_3_z
+        out_M[_M_urps[11][leg]] = M_ya_3_z
+        out_M[_M_urps[12][leg]] = J_group_3_zz
     (
     total_urps_xx, total_urps_xy, total_urps_xz, total_urps_yy, total_urps_yz, total_urps_zz,
         total_urps_xx_2, total_urps_xy_2, total_urps_xz_2, total_urps_yx, total_urps_yy_2,
@@ -2176,7 +2253,7 @@ def _run_Z(m, X, V):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_Z = m.zeros(12)
+    out_Z = m.zeros("Z")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -2443,7 +2520,7 @@ def _run_Z(m, X, V):
         sums = m.added(sums, leg, (
         U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,
         ))
-        out_Z[[6, 7, 8, 9, 10, 11][leg]] = mu_3_o_z
+        out_Z[_Z_urps[0][leg]] = mu_3_o_z
     (
     total_urps_x, total_urps_y, total_urps_z, total_urps_x_2, total_urps_y_2, total_urps_z_2,
     ) = sums
@@ -2504,7 +2581,7 @@ def _run_H(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_H = m.zeros(72)
+    out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
         branch_2, urps_base_frame_xx, urps_base_frame_xy, urps_base_frame_xz, urps_base_frame_yx,
@@ -2551,12 +2628,12 @@ def _run_H(m, X):
         ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
             _TOLERANCE * _TOLERANCE * 0.6400000000000001))
         )
-        out_H[[0, 1, 2, 3, 4, 5][leg]] = axis_z_x
-        out_H[[6, 7, 8, 9, 10, 11][leg]] = axis_z_y
-        out_H[[12, 13, 14, 15, 16, 17][leg]] = axis_z_z
-        out_H[[18, 19, 20, 21, 22, 23][leg]] = H_a_4_x
-        out_H[[24, 25, 26, 27, 28, 29][leg]] = H_a_4_y
-        out_H[[30, 31, 32, 33, 34, 35][leg]] = H_a_4_z
+        out_H[_H_urps[0][leg]] = axis_z_x
+        out_H[_H_urps[1][leg]] = axis_z_y
+        out_H[_H_urps[2][leg]] = axis_z_z
+        out_H[_H_urps[3][leg]] = H_a_4_x
+        out_H[_H_urps[4][leg]] = H_a_4_y
+        out_H[_H_urps[5][leg]] = H_a_4_z
     return ok, (out_H,)
 
 
@@ -2632,8 +2709,8 @@ def _run_required(m, X, V, A):
     alpha_z = A_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_required = m.zeros(12)
-    out_H = m.zeros(72)
+    out_required = m.zeros("required")
+    out_H = m.zeros("H")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -2930,13 +3007,13 @@ def _run_required(m, X, V, A):
         sums = m.added(sums, leg, (
         c_in_base_x, c_in_base_y, c_in_base_z, R_a_t, R_a_t_2, R_a_t_3,
         ))
-        out_required[[6, 7, 8, 9, 10, 11][leg]] = mu_3_z
-        out_H[[0, 1, 2, 3, 4, 5][leg]] = axis_z_x
-        out_H[[6, 7, 8, 9, 10, 11][leg]] = axis_z_y
-        out_H[[12, 13, 14, 15, 16, 17][leg]] = axis_z_z
-        out_H[[18, 19, 20, 21, 22, 23][leg]] = H_a_4_x
-        out_H[[24, 25, 26, 27, 28, 29][leg]] = H_a_4_y
-        out_H[[30, 31, 32, 33, 34, 35][leg]] = H_a_4_z
+        out_required[_required_urps[0][leg]] = mu_3_z
+        out_H[_H_urps[0][leg]] = axis_z_x
+        out_H[_H_urps[1][leg]] = axis_z_y
+        out_H[_H_urps[2][leg]] = axis_z_z
+        out_H[_H_urps[3][leg]] = H_a_4_x
+        out_H[_H_urps[4][leg]] = H_a_4_y
+        out_H[_H_urps[5][leg]] = H_a_4_z
     (
     total_urps_x, total_urps_y, total_urps_z, total_urps_x_2, total_urps_y_2, total_urps_z_2,
     ) = sums
@@ -2998,7 +3075,7 @@ def _run_inverse_kinematics(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_q = m.zeros(24)
+    out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
         branch_1, branch_2, urps_base_frame_xx, urps_base_frame_xy, urps_base_frame_xz,
@@ -3047,10 +3124,10 @@ def _run_inverse_kinematics(m, X):
         ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
             _TOLERANCE * _TOLERANCE * 0.6400000000000001))
         )
-        out_q[[0, 4, 8, 12, 16, 20][leg]] = q_1
-        out_q[[1, 5, 9, 13, 17, 21][leg]] = q_2
-        out_q[[2, 6, 10, 14, 18, 22][leg]] = y_3_extra
-        out_q[[3, 7, 11, 15, 19, 23][leg]] = root_2
+        out_q[_q_urps[0][leg]] = q_1
+        out_q[_q_urps[1][leg]] = q_2
+        out_q[_q_urps[2][leg]] = y_3_extra
+        out_q[_q_urps[3][leg]] = root_2
     return ok, (out_q,)
 
 
@@ -3109,7 +3186,7 @@ def _run_joint_rates(m, X, V):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_qd = m.zeros(24)
+    out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
         branch_1, branch_2, urps_base_frame_xx, urps_base_frame_xy, urps_base_frame_xz,
@@ -3212,10 +3289,10 @@ def _run_joint_rates(m, X, V):
             _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-w_1_t_2) > _TOLERANCE *
             0.6400000000000001))
         )
-        out_qd[[0, 4, 8, 12, 16, 20][leg]] = qd_1
-        out_qd[[1, 5, 9, 13, 17, 21][leg]] = -qd_2
-        out_qd[[2, 6, 10, 14, 18, 22][leg]] = yd_3
-        out_qd[[3, 7, 11, 15, 19, 23][leg]] = S_dot_rest_tip_z
+        out_qd[_qd_urps[0][leg]] = qd_1
+        out_qd[_qd_urps[1][leg]] = -qd_2
+        out_qd[_qd_urps[2][leg]] = yd_3
+        out_qd[_qd_urps[3][leg]] = S_dot_rest_tip_z
     return ok, (out_qd,)
 
 
@@ -3287,7 +3364,7 @@ def _run_joint_accelerations(m, X, V, A):
     alpha_z = A_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_qdd = m.zeros(24)
+    out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
         branch_1, branch_2, urps_base_frame_xx, urps_base_frame_xy, urps_base_frame_xz,
@@ -3443,10 +3520,10 @@ def _run_joint_accelerations(m, X, V, A):
             _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-w_1_t_2) > _TOLERANCE *
             0.6400000000000001))
         )
-        out_qdd[[0, 4, 8, 12, 16, 20][leg]] = qdd_1
-        out_qdd[[1, 5, 9, 13, 17, 21][leg]] = -qdd_2
-        out_qdd[[2, 6, 10, 14, 18, 22][leg]] = ydd_3
-        out_qdd[[3, 7, 11, 15, 19, 23][leg]] = rel_z
+        out_qdd[_qdd_urps[0][leg]] = qdd_1
+        out_qdd[_qdd_urps[1][leg]] = -qdd_2
+        out_qdd[_qdd_urps[2][leg]] = ydd_3
+        out_qdd[_qdd_urps[3][leg]] = rel_z
     return ok, (out_qdd,)
 
 
@@ -3519,8 +3596,8 @@ def _run_legs(m, X, V, A):
     alpha_z = A_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_leg_force = m.zeros(18)
-    out_drive = m.zeros(18)
+    out_leg_force = m.zeros("leg_force")
+    out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
         J_group_3_xy, J_group_3_xz, J_group_3_yz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1,
@@ -3755,12 +3832,12 @@ def _run_legs(m, X, V, A):
             _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-w_1_t_2) > _TOLERANCE *
             0.6400000000000001))
         )
-        out_leg_force[[0, 3, 6, 9, 12, 15][leg]] = c_true_in_base_x
-        out_leg_force[[1, 4, 7, 10, 13, 16][leg]] = c_true_in_base_y
-        out_leg_force[[2, 5, 8, 11, 14, 17][leg]] = c_true_in_base_z
-        out_drive[[0, 3, 6, 9, 12, 15][leg]] = axis_z_x
-        out_drive[[1, 4, 7, 10, 13, 16][leg]] = axis_z_y
-        out_drive[[2, 5, 8, 11, 14, 17][leg]] = axis_z_z
+        out_leg_force[_leg_force_urps[0][leg]] = c_true_in_base_x
+        out_leg_force[_leg_force_urps[1][leg]] = c_true_in_base_y
+        out_leg_force[_leg_force_urps[2][leg]] = c_true_in_base_z
+        out_drive[_drive_urps[0][leg]] = axis_z_x
+        out_drive[_drive_urps[1][leg]] = axis_z_y
+        out_drive[_drive_urps[2][leg]] = axis_z_z
     return ok, (out_leg_force, out_drive,)
 
 
@@ -3807,7 +3884,7 @@ def _run_potential(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_potential = m.zeros(1)
+    out_potential = m.zeros("potential")
     # (V1) potential energy
     potential_t = (
     gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + m_star*t_x) +
@@ -3939,10 +4016,10 @@ def _run_condition(m, X):
     reached = True
     clear = True
     valid = valid & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_H = m.zeros(72)
-    out_lengths = m.zeros(2)
-    out_pivots = m.zeros(6)
-    out_reach = m.zeros(6)
+    out_H = m.zeros("H")
+    out_lengths = m.zeros("lengths")
+    out_pivots = m.zeros("pivots")
+    out_reach = m.zeros("reach")
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
@@ -4019,13 +4096,13 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         spread_t_5,
         ))
-        out_H[[0, 1, 2, 3, 4, 5][leg]] = axis_z_x
-        out_H[[6, 7, 8, 9, 10, 11][leg]] = axis_z_y
-        out_H[[12, 13, 14, 15, 16, 17][leg]] = axis_z_z
-        out_H[[18, 19, 20, 21, 22, 23][leg]] = H_a_4_x
-        out_H[[24, 25, 26, 27, 28, 29][leg]] = H_a_4_y
-        out_H[[30, 31, 32, 33, 34, 35][leg]] = H_a_4_z
-        out_pivots[[0, 1, 2, 3, 4, 5][leg]] = least_pivots
+        out_H[_H_urps[0][leg]] = axis_z_x
+        out_H[_H_urps[1][leg]] = axis_z_y
+        out_H[_H_urps[2][leg]] = axis_z_z
+        out_H[_H_urps[3][leg]] = H_a_4_x
+        out_H[_H_urps[4][leg]] = H_a_4_y
+        out_H[_H_urps[5][leg]] = H_a_4_z
+        out_pivots[_pivots_urps[0][leg]] = least_pivots
     total_urps, = sums
     # (C2) rms distance of the platform points from their centroid
     spread = spread_t*sqrt(total_urps)
@@ -4038,44 +4115,42 @@ _DEFAULT = Parameters()
 
 
 def _steps_M(m, X):
-    M_of_M, = m.run(_run_M, ((12, 12),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
     return (M_of_M,)
 
 
 def _steps_Z(m, X, V):
-    Z_of_Z, = m.run(_run_Z, ((12,),), X, V)
+    Z_of_Z, = m.run(_run_Z, ("Z",), X, V)
     return (Z_of_Z,)
 
 
 def _steps_H(m, X):
-    H_of_H, = m.run(_run_H, ((12, 6),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 
 def _steps_inverse_kinematics(m, X):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((24,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     return (q_of_inverse_kinematics,)
 
 
 def _steps_joint_rates(m, X, V):
-    qd_of_joint_rates, = m.run(_run_joint_rates, ((24,),), X, V)
+    qd_of_joint_rates, = m.run(_run_joint_rates, ("qd",), X, V)
     return (qd_of_joint_rates,)
 
 
 def _steps_joint_accelerations(m, X, V, A):
-    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ((24,),), X, V, A)
+    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
     return (qdd_of_joint_accelerations,)
 
 
 def _steps_dynamics(m, X, V):
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((12, 12), (12,), (12, 6)), X, V)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
 
 
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
-    required_of_required, H_of_required = m.run(_run_required, ((12,), (12, 6)), X, V, A)
+    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = _extended(wrench, 12)
     subtract_2 = required_of_required - extend_1
     take_3 = H_of_required[0:6]
@@ -4085,9 +4160,7 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((12, 12), (12,), (12, 6)), X, V)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
     extend_2 = _extended(wrench, 12)
     add_3 = times_1 + extend_2
@@ -4098,9 +4171,7 @@ def _steps_forward_dynamics(m, X, V, tau, wrench):
 
 def _steps_complete_acceleration(m, X, V, A, wrench):
     clear_at_1 = _cleared_at(A, [6, 7, 8, 9, 10, 11])
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((12, 12), (12,), (12, 6)), X, V)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     times_2 = np.einsum("ijs,js->is", M_of_dynamics, clear_at_1)
     add_3 = times_2 + Z_of_dynamics
     extend_4 = _extended(wrench, 12)
@@ -4115,27 +4186,27 @@ def _steps_complete_acceleration(m, X, V, A, wrench):
 
 
 def _steps_leg_reactions(m, X, V, A, wrench):
-    required_of_required, H_of_required = m.run(_run_required, ((12,), (12, 6)), X, V, A)
+    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = _extended(wrench, 12)
     subtract_2 = required_of_required - extend_1
     take_3 = H_of_required[0:6]
     take_4 = subtract_2[0:6]
     solve_5 = _solve(take_3, take_4)
-    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ((6, 3), (6, 3)), X, V, A)
+    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
     add_forces_6 = _with_forces(leg_force_of_legs, solve_5, drive_of_legs, [0, 1, 2, 3, 4, 5])
     return (add_forces_6,)
 
 
 def _steps_energy(m, X, V):
-    M_of_M, = m.run(_run_M, ((12, 12),), X)
-    potential_of_potential, = m.run(_run_potential, ((1,),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
+    potential_of_potential, = m.run(_run_potential, ("potential",), X)
     half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
     entry_2 = potential_of_potential[0]
     return (half_form_1, entry_2,)
 
 
 def _steps_null_space(m, X):
-    H_of_H, = m.run(_run_H, ((12, 6),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     null_basis_1 = _null_basis(H_of_H, 6)
     return (null_basis_1,)
 
@@ -4143,7 +4214,7 @@ def _steps_null_space(m, X):
 def _steps_condition(m, X, length):
     (
     H_of_condition, lengths_of_condition, pivots_of_condition, reach_of_condition,
-    ) = m.run(_run_condition, ((12, 6), (2,), (6,), (6,)), X)
+    ) = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
     choose_length_1 = _chosen_length(lengths_of_condition, length)
     divide_rows_2 = _rows_divided(H_of_condition, choose_length_1, [3, 4, 5, 6, 7, 8, 9, 10, 11])
     singular_values_3 = _singular_values(divide_rows_2)
@@ -4151,14 +4222,14 @@ def _steps_condition(m, X, length):
 
 
 def _steps_mismatch(m, X, q_actuated):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((24,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     take_1 = q_of_inverse_kinematics[[3, 7, 11, 15, 19, 23]]
     subtract_2 = q_actuated - take_1
     return (subtract_2,)
 
 
 def _steps_slope(m, X):
-    H_of_H, = m.run(_run_H, ((12, 6),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 

@@ -72,6 +72,132 @@ NJ = 12
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
 
+_SHAPES = {  # of the arrays that functions give
+    "M": (6, 6),
+    "Z": (6,),
+    "H": (6, 3),
+    "Hk": (6, 3),
+    "constraint_bias": (3,),
+    "required": (6,),
+    "q": (12,),
+    "qd": (12,),
+    "qdd": (12,),
+    "constraints": (3,),
+    "leg_force": (4, 6),
+    "drive": (3, 6),
+    "constraint_direction": (3, 6),
+    "potential": (1,),
+    "lengths": (2,),
+    "pivots": (4,),
+    "reach": (4,),
+}
+# Where the entries of a leg type's legs stand in these arrays, row by row.
+_H_ups = (
+    [0, 1, 2],
+    [3, 4, 5],
+    [6, 7, 8],
+    [9, 10, 11],
+    [12, 13, 14],
+    [15, 16, 17],
+)
+_Hk_up = (
+    [0],
+    [3],
+    [6],
+    [9],
+    [12],
+    [15],
+    [1],
+    [4],
+    [7],
+    [10],
+    [13],
+    [16],
+    [11],
+    [14],
+    [17],
+)
+_constraint_bias_up = (
+    [0],
+    [1],
+    [2],
+)
+_q_ups = (
+    [0, 3, 6],
+    [1, 4, 7],
+    [2, 5, 8],
+)
+_q_up = (
+    [9],
+    [10],
+    [11],
+)
+_qd_ups = (
+    [0, 3, 6],
+    [1, 4, 7],
+    [2, 5, 8],
+)
+_qd_up = (
+    [9],
+    [10],
+    [11],
+)
+_qdd_ups = (
+    [0, 3, 6],
+    [1, 4, 7],
+    [2, 5, 8],
+)
+_qdd_up = (
+    [9],
+    [10],
+    [11],
+)
+_constraints_up = (
+    [0],
+    [1],
+    [2],
+)
+_leg_force_ups = (
+    [0, 6, 12],
+    [1, 7, 13],
+    [2, 8, 14],
+)
+_drive_ups = (
+    [0, 6, 12],
+    [1, 7, 13],
+    [2, 8, 14],
+)
+_leg_force_up = (
+    [18],
+    [19],
+    [20],
+    [21],
+    [22],
+    [23],
+)
+_constraint_direction_up = (
+    [0],
+    [1],
+    [2],
+    [3],
+    [4],
+    [5],
+    [6],
+    [7],
+    [8],
+    [9],
+    [10],
+    [11],
+    [15],
+    [16],
+    [17],
+)
+_pivots_ups = (
+    [0, 1, 2],
+)
+_pivots_up = (
+    [3],
+)
 _DRIVEN_JOINTS = (2, 5, 8)
 
 _DEFAULTS = {
@@ -429,6 +555,8 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _ups = 3
+    _up = 1
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     gravity_z = p.gravity[2]
@@ -630,19 +758,19 @@ def _prepare(p):
     ups_base_frame_xz*ups_base_point_x + ups_base_frame_yz*ups_base_point_y +
         ups_base_frame_zz*ups_base_point_z
     )
-    total_ups = np.sum(np.broadcast_to(ups_link3_mass, 3))
-    total_ups_x = np.sum(np.broadcast_to(h_star_t_4, 3))
-    total_ups_y = np.sum(np.broadcast_to(h_star_t_5, 3))
-    total_ups_z = np.sum(np.broadcast_to(h_star_t_6, 3))
-    total_ups_xx = np.sum(np.broadcast_to(J_star_t_15, 3))
-    total_ups_xy = np.sum(np.broadcast_to(J_star_t_16, 3))
-    total_ups_xz = np.sum(np.broadcast_to(J_star_t_17, 3))
-    total_ups_yy = np.sum(np.broadcast_to(J_star_t_18, 3))
-    total_ups_yz = np.sum(np.broadcast_to(J_star_t_19, 3))
-    total_ups_zz = np.sum(np.broadcast_to(J_star_t_20, 3))
-    total_ups_x_2 = np.sum(np.broadcast_to(ups_platform_point_x, 3))
-    total_ups_y_2 = np.sum(np.broadcast_to(ups_platform_point_y, 3))
-    total_ups_z_2 = np.sum(np.broadcast_to(ups_platform_point_z, 3))
+    total_ups = np.sum(np.broadcast_to(ups_link3_mass, _ups))
+    total_ups_x = np.sum(np.broadcast_to(h_star_t_4, _ups))
+    total_ups_y = np.sum(np.broadcast_to(h_star_t_5, _ups))
+    total_ups_z = np.sum(np.broadcast_to(h_star_t_6, _ups))
+    total_ups_xx = np.sum(np.broadcast_to(J_star_t_15, _ups))
+    total_ups_xy = np.sum(np.broadcast_to(J_star_t_16, _ups))
+    total_ups_xz = np.sum(np.broadcast_to(J_star_t_17, _ups))
+    total_ups_yy = np.sum(np.broadcast_to(J_star_t_18, _ups))
+    total_ups_yz = np.sum(np.broadcast_to(J_star_t_19, _ups))
+    total_ups_zz = np.sum(np.broadcast_to(J_star_t_20, _ups))
+    total_ups_x_2 = np.sum(np.broadcast_to(ups_platform_point_x, _ups))
+    total_ups_y_2 = np.sum(np.broadcast_to(ups_platform_point_y, _ups))
+    total_ups_z_2 = np.sum(np.broadcast_to(ups_platform_point_z, _ups))
     # (up-G4) first moment of link 3 about the origin of link 3
     h_3_up_x = up_link3_centre_of_mass_x*up_link3_mass
     h_3_up_y = up_link3_centre_of_mass_y*up_link3_mass
@@ -712,9 +840,9 @@ def _prepare(p):
     up_base_frame_xz*up_base_point_x + up_base_frame_yz*up_base_point_y +
         up_base_frame_zz*up_base_point_z
     )
-    total_up_x = np.sum(np.broadcast_to(up_platform_point_x, 1))
-    total_up_y = np.sum(np.broadcast_to(up_platform_point_y, 1))
-    total_up_z = np.sum(np.broadcast_to(up_platform_point_z, 1))
+    total_up_x = np.sum(np.broadcast_to(up_platform_point_x, _up))
+    total_up_y = np.sum(np.broadcast_to(up_platform_point_y, _up))
+    total_up_z = np.sum(np.broadcast_to(up_platform_point_z, _up))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_ups
     # (L2) first moment about the platform origin
@@ -746,7 +874,7 @@ def _prepare(p):
                 J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x,
                 h_star_y, h_star_z, m_star,),
             (
-                (3,
+                (_ups,
         (J_group_2_ups_xx, J_group_2_ups_xy, J_group_2_ups_xz, J_group_2_ups_yy, J_group_2_ups_yz,
                     J_group_2_ups_zz, Sigma_2_ups_xx, Sigma_2_ups_yy, Sigma_2_ups_zz,
                     branch_1_ups, branch_2_ups, g_r0_x_2, g_r0_y_2, g_r0_z_2, h_2_ups_x,
@@ -756,7 +884,7 @@ def _prepare(p):
                     ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_platform_point_x,
                     ups_platform_point_y, ups_platform_point_z,),
                 ),
-                (1,
+                (_up,
         (J_group_2_up_xx, J_group_2_up_xy, J_group_2_up_xz, J_group_2_up_yy, J_group_2_up_yz,
                     J_group_2_up_zz, Sigma_2_up_xx, Sigma_2_up_yy, Sigma_2_up_zz, branch_1_up,
                     branch_2_up, g_r0_x, g_r0_y, g_r0_z, h_2_up_x, h_2_up_y, h_2_up_z, h_3_up_x,
@@ -776,7 +904,7 @@ def _prepare(p):
         (J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
                 h_star_z, m_star,),
             (
-                (3,
+                (_ups,
         (J_group_2_ups_xx, J_group_2_ups_xy, J_group_2_ups_xz, J_group_2_ups_yy, J_group_2_ups_yz,
                     J_group_2_ups_zz, branch_1_ups, branch_2_ups, h_3_ups_x, h_3_ups_y, h_3_ups_z,
                     ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
@@ -784,7 +912,7 @@ def _prepare(p):
                     ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
                     ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
-                (1,
+                (_up,
         (J_group_2_up_xx, J_group_2_up_xy, J_group_2_up_xz, J_group_2_up_yy, J_group_2_up_yz,
                     J_group_2_up_zz, branch_1_up, branch_2_up, h_3_up_x, h_3_up_y, h_3_up_z,
                     up_base_frame_xx, up_base_frame_xy, up_base_frame_xz, up_base_frame_yx,
@@ -803,7 +931,7 @@ def _prepare(p):
         (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2,
                 Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
             (
-                (3,
+                (_ups,
         (J_group_2_ups_xy, J_group_2_ups_xz, J_group_2_ups_yz, Sigma_2_ups_xx, Sigma_2_ups_yy,
                     Sigma_2_ups_zz, branch_1_ups, branch_2_ups, g_r0_x_2, g_r0_y_2, g_r0_z_2,
                     h_2_ups_x, h_2_ups_y, h_2_ups_z, h_3_ups_x, h_3_ups_y, h_3_ups_z,
@@ -812,7 +940,7 @@ def _prepare(p):
                     ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
                     ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
-                (1,
+                (_up,
         (J_group_2_up_xy, J_group_2_up_xz, J_group_2_up_yz, Sigma_2_up_xx, Sigma_2_up_yy,
                     Sigma_2_up_zz, branch_1_up, branch_2_up, g_r0_x, g_r0_y, g_r0_z, h_2_up_x,
                     h_2_up_y, h_2_up_z, h_3_up_x, h_3_up_y, h_3_up_z, up_base_frame_xx,
@@ -831,7 +959,7 @@ def _prepare(p):
         "H": (
         (),
             (
-                (3,
+                (_ups,
         (branch_2_ups, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
                     ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
                     ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
@@ -842,7 +970,7 @@ def _prepare(p):
         "Hk": (
         (),
             (
-                (1,
+                (_up,
         (branch_1_up, branch_2_up, up_base_frame_xx, up_base_frame_xy, up_base_frame_xz,
                     up_base_frame_yx, up_base_frame_yy, up_base_frame_yz, up_base_frame_zx,
                     up_base_frame_zy, up_base_frame_zz, up_base_point_x, up_base_point_y,
@@ -858,7 +986,7 @@ def _prepare(p):
         "constraint_bias": (
         (),
             (
-                (1,
+                (_up,
         (branch_1_up, branch_2_up, up_base_frame_xx, up_base_frame_xy, up_base_frame_xz,
                     up_base_frame_yx, up_base_frame_yy, up_base_frame_yz, up_base_frame_zx,
                     up_base_frame_zy, up_base_frame_zz, up_base_point_x, up_base_point_y,
@@ -875,7 +1003,7 @@ def _prepare(p):
         (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
                 gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
-                (3,
+                (_ups,
         (J_group_2_ups_xy, J_group_2_ups_xz, J_group_2_ups_yz, Sigma_2_ups_xx, Sigma_2_ups_yy,
                     Sigma_2_ups_zz, branch_1_ups, branch_2_ups, g_r0_x_2, g_r0_y_2, g_r0_z_2,
                     h_2_ups_x, h_2_ups_y, h_2_ups_z, h_3_ups_x, h_3_ups_y, h_3_ups_z,
@@ -884,7 +1012,7 @@ def _prepare(p):
                     ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
                     ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
-                (1,
+                (_up,
         (J_group_2_up_xy, J_group_2_up_xz, J_group_2_up_yz, Sigma_2_up_xx, Sigma_2_up_yy,
                     Sigma_2_up_zz, branch_1_up, branch_2_up, g_r0_x, g_r0_y, g_r0_z, h_2_up_x,
                     h_2_up_y, h_2_up_z, h_3_up_x, h_3_up_y, h_3_up_z, up_base_frame_xx,
@@ -903,14 +1031,14 @@ def _prepare(p):
         "inverse_kinematics": (
         (),
             (
-                (3,
+                (_ups,
         (branch_1_ups, branch_2_ups, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
                     ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
                     ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
                     ups_base_point_z, ups_platform_point_x, ups_platform_point_y,
                     ups_platform_point_z,),
                 ),
-                (1,
+                (_up,
         (branch_1_up, branch_2_up, up_base_frame_xx, up_base_frame_xy, up_base_frame_xz,
                     up_base_frame_yx, up_base_frame_yy, up_base_frame_yz, up_base_frame_zx,
                     up_base_frame_zy, up_base_frame_zz, up_base_point_x, up_base_point_y,
@@ -922,14 +1050,14 @@ def _prepare(p):
         "joint_rates": (
         (),
             (
-                (3,
+                (_ups,
         (branch_1_ups, branch_2_ups, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
                     ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
                     ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
                     ups_base_point_z, ups_platform_point_x, ups_platform_point_y,
                     ups_platform_point_z,),
                 ),
-                (1,
+                (_up,
         (branch_1_up, branch_2_up, up_base_frame_xx, up_base_frame_xy, up_base_frame_xz,
                     up_base_frame_yx, up_base_frame_yy, up_base_frame_yz, up_base_frame_zx,
                     up_base_frame_zy, up_base_frame_zz, up_base_point_x, up_base_point_y,
@@ -945,14 +1073,14 @@ def _prepare(p):
         "joint_accelerations": (
         (),
             (
-                (3,
+                (_ups,
         (branch_1_ups, branch_2_ups, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
                     ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
                     ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
                     ups_base_point_z, ups_platform_point_x, ups_platform_point_y,
                     ups_platform_point_z,),
                 ),
-                (1,
+                (_up,
         (branch_1_up, branch_2_up, up_base_frame_xx, up_base_frame_xy, up_base_frame_xz,
                     up_base_frame_yx, up_base_frame_yy, up_base_frame_yz, up_base_frame_zx,
                     up_base_frame_zy, up_base_frame_zz, up_base_point_x, up_base_point_y,
@@ -968,7 +1096,7 @@ def _prepare(p):
         "constraints": (
         (),
             (
-                (1,
+                (_up,
         (branch_1_up, branch_2_up, up_base_frame_xx, up_base_frame_xy, up_base_frame_xz,
                     up_base_frame_yx, up_base_frame_yy, up_base_frame_yz, up_base_frame_zx,
                     up_base_frame_zy, up_base_frame_zz, up_base_point_x, up_base_point_y,
@@ -984,7 +1112,7 @@ def _prepare(p):
         "legs": (
         (),
             (
-                (3,
+                (_ups,
         (J_group_2_ups_xy, J_group_2_ups_xz, J_group_2_ups_yz, Sigma_2_ups_xx, Sigma_2_ups_yy,
                     Sigma_2_ups_zz, branch_1_ups, branch_2_ups, g_r0_x_2, g_r0_y_2, g_r0_z_2,
                     h_2_ups_x, h_2_ups_y, h_2_ups_z, h_3_ups_x, h_3_ups_y, h_3_ups_z,
@@ -994,7 +1122,7 @@ def _prepare(p):
                     ups_link3_mass, ups_platform_point_x, ups_platform_point_y,
                     ups_platform_point_z,),
                 ),
-                (1,
+                (_up,
         (J_group_2_up_xy, J_group_2_up_xz, J_group_2_up_yz, Sigma_2_up_xx, Sigma_2_up_yy,
                     Sigma_2_up_zz, branch_1_up, branch_2_up, g_r0_x, g_r0_y, g_r0_z, h_2_up_x,
                     h_2_up_y, h_2_up_z, h_3_up_x, h_3_up_y, h_3_up_z, up_base_frame_xx,
@@ -1013,7 +1141,7 @@ def _prepare(p):
         "potential": (
         (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
-                (3,
+                (_ups,
         (b_ups_r0_x, b_ups_r0_y, b_ups_r0_z, branch_1_ups, branch_2_ups, g_r0_x_2, g_r0_y_2,
                     g_r0_z_2, h_2_ups_x, h_2_ups_y, h_2_ups_z, h_3_ups_x, h_3_ups_y, h_3_ups_z,
                     ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
@@ -1022,7 +1150,7 @@ def _prepare(p):
                     ups_link2_mass, ups_platform_point_x, ups_platform_point_y,
                     ups_platform_point_z,),
                 ),
-                (1,
+                (_up,
         (b_up_r0_x, b_up_r0_y, b_up_r0_z, branch_1_up, branch_2_up, g_r0_x, g_r0_y, g_r0_z,
                     h_2_up_x, h_2_up_y, h_2_up_z, h_3_up_x, h_3_up_y, h_3_up_z, up_base_frame_xx,
                     up_base_frame_xy, up_base_frame_xz, up_base_frame_yx, up_base_frame_yy,
@@ -1036,14 +1164,14 @@ def _prepare(p):
         "condition": (
         (b_c_x, b_c_y, b_c_z,),
             (
-                (3,
+                (_ups,
         (branch_1_ups, branch_2_ups, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
                     ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
                     ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
                     ups_base_point_z, ups_platform_point_x, ups_platform_point_y,
                     ups_platform_point_z,),
                 ),
-                (1,
+                (_up,
         (branch_1_up, branch_2_up, up_base_frame_xx, up_base_frame_xy, up_base_frame_xz,
                     up_base_frame_yx, up_base_frame_yy, up_base_frame_yz, up_base_frame_zx,
                     up_base_frame_zy, up_base_frame_zz, up_base_point_x, up_base_point_y,
@@ -1096,16 +1224,16 @@ class _Floats:
         """Shared values, and (leg, its values) for every leg of each loop."""
         return _constants(self.p, name)[:2]
 
-    def zeros(self, size):
-        return [0.0] * size
+    def zeros(self, name):
+        return [0.0] * math.prod(_SHAPES[name])
 
     def added(self, sums, leg, terms):
         """Sums over the legs so far."""
         return [a + b for a, b in zip(sums, terms)]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(shape)), np.nan) for shape in shapes]
+        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
         for k in range(self.states):
             try:
@@ -1115,7 +1243,7 @@ class _Floats:
             if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
                 for a, array in zip(found, arrays):
                     a[k] = array
-        return [a.T.reshape(*shape, self.states) for a, shape in zip(found, shapes)]
+        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
 
 
 class _Arrays:
@@ -1131,8 +1259,8 @@ class _Arrays:
         shared, _, columns = _constants(self.p, name)
         return shared, columns
 
-    def zeros(self, size):
-        return np.zeros((size, self.states))
+    def zeros(self, name):
+        return np.zeros((math.prod(_SHAPES[name]), self.states))
 
     def every(self, good):
         """Whether it holds for all legs."""
@@ -1143,7 +1271,7 @@ class _Arrays:
         shape = (legs.stop, self.states)
         return [np.add.reduce(np.broadcast_to(t, shape), axis=0) for t in terms]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
         ok, arrays = function(self, *vectors)
         for a in arrays:
@@ -1151,7 +1279,7 @@ class _Arrays:
         if not np.all(ok):
             for a in arrays:
                 a[:, ~ok] = np.nan
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
 
 class _Judged(_Arrays):
@@ -1161,12 +1289,12 @@ class _Judged(_Arrays):
         super().__init__(p, states)
         self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
         (valid, reached, clear), arrays = function(self, *vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
             self.failed[code] |= ~np.broadcast_to(good, self.states)
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -1570,11 +1698,11 @@ def _run_dynamics(m, X, V):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_M = m.zeros(36)
-    out_Z = m.zeros(6)
-    out_H = m.zeros(18)
-    out_Hk = m.zeros(18)
-    out_constraint_bias = m.zeros(3)
+    out_M = m.zeros("M")
+    out_Z = m.zeros("Z")
+    out_H = m.zeros("H")
+    out_Hk = m.zeros("Hk")
+    out_constraint_bias = m.zeros("constraint_bias")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -1897,12 +2025,12 @@ def _run_dynamics(m, X, V):
             M_aa_t, M_aa_t_2, M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6, U_ups_in_base_x,
             U_ups_in_base_y, U_ups_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,
         ))
-        out_H[[0, 1, 2][leg]] = axis_x_x
-        out_H[[3, 4, 5][leg]] = axis_x_y
-        out_H[[6, 7, 8][leg]] = axis_x_z
-        out_H[[9, 10, 11][leg]] = H_a_3_ups_x
-        out_H[[12, 13, 14][leg]] = H_a_3_ups_y
-        out_H[[15, 16, 17][leg]] = H_a_3_ups_z
+        out_H[_H_ups[0][leg]] = axis_x_x
+        out_H[_H_ups[1][leg]] = axis_x_y
+        out_H[_H_ups[2][leg]] = axis_x_z
+        out_H[_H_ups[3][leg]] = H_a_3_ups_x
+        out_H[_H_ups[4][leg]] = H_a_3_ups_y
+        out_H[_H_ups[5][leg]] = H_a_3_ups_z
     (
     total_ups_xx, total_ups_xy, total_ups_xz, total_ups_yy, total_ups_yz, total_ups_zz,
         total_ups_xx_2, total_ups_xy_2, total_ups_xz_2, total_ups_yx, total_ups_yy_2,
@@ -3009,24 +3137,24 @@ def _run_dynamics(m, X, V):
             M_ta_t_32, M_aa_t_7, M_aa_t_8, M_aa_t_9, M_aa_t_10, M_aa_t_11, M_aa_t_12,
             U_up_in_base_x, U_up_in_base_y, U_up_in_base_z, Z_a_t_4, Z_a_t_5, Z_a_t_6,
         ))
-        out_Hk[[0][leg]] = axis_y_up_axes2_in_base_x
-        out_Hk[[3][leg]] = axis_y_up_axes2_in_base_y
-        out_Hk[[6][leg]] = axis_y_up_axes2_in_base_z
-        out_Hk[[9][leg]] = Hk_a_1_up_x
-        out_Hk[[12][leg]] = Hk_a_1_up_y
-        out_Hk[[15][leg]] = Hk_a_1_up_z
-        out_constraint_bias[[0][leg]] = gamma_c1_up
-        out_Hk[[1][leg]] = axis_z_up_axes2_in_base_x
-        out_Hk[[4][leg]] = axis_z_up_axes2_in_base_y
-        out_Hk[[7][leg]] = axis_z_up_axes2_in_base_z
-        out_Hk[[10][leg]] = Hk_a_2_up_x
-        out_Hk[[13][leg]] = Hk_a_2_up_y
-        out_Hk[[16][leg]] = Hk_a_2_up_z
-        out_constraint_bias[[1][leg]] = gamma_c2_up
-        out_Hk[[11][leg]] = mu_c3_up_in_base_x
-        out_Hk[[14][leg]] = mu_c3_up_in_base_y
-        out_Hk[[17][leg]] = mu_c3_up_in_base_z
-        out_constraint_bias[[2][leg]] = gamma_c3_up
+        out_Hk[_Hk_up[0][leg]] = axis_y_up_axes2_in_base_x
+        out_Hk[_Hk_up[1][leg]] = axis_y_up_axes2_in_base_y
+        out_Hk[_Hk_up[2][leg]] = axis_y_up_axes2_in_base_z
+        out_Hk[_Hk_up[3][leg]] = Hk_a_1_up_x
+        out_Hk[_Hk_up[4][leg]] = Hk_a_1_up_y
+        out_Hk[_Hk_up[5][leg]] = Hk_a_1_up_z
+        out_constraint_bias[_constraint_bias_up[0][leg]] = gamma_c1_up
+        out_Hk[_Hk_up[6][leg]] = axis_z_up_axes2_in_base_x
+        out_Hk[_Hk_up[7][leg]] = axis_z_up_axes2_in_base_y
+        out_Hk[_Hk_up[8][leg]] = axis_z_up_axes2_in_base_z
+        out_Hk[_Hk_up[9][leg]] = Hk_a_2_up_x
+        out_Hk[_Hk_up[10][leg]] = Hk_a_2_up_y
+        out_Hk[_Hk_up[11][leg]] = Hk_a_2_up_z
+        out_constraint_bias[_constraint_bias_up[1][leg]] = gamma_c2_up
+        out_Hk[_Hk_up[12][leg]] = mu_c3_up_in_base_x
+        out_Hk[_Hk_up[13][leg]] = mu_c3_up_in_base_y
+        out_Hk[_Hk_up[14][leg]] = mu_c3_up_in_base_z
+        out_constraint_bias[_constraint_bias_up[2][leg]] = gamma_c3_up
     (
     total_up_xx, total_up_xy, total_up_xz, total_up_yy, total_up_yz, total_up_zz, total_up_xx_2,
         total_up_xy_2, total_up_xz_2, total_up_yx, total_up_yy_2, total_up_yz_2, total_up_zx,
@@ -3155,7 +3283,7 @@ def _run_M(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_M = m.zeros(36)
+    out_M = m.zeros("M")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -4202,7 +4330,7 @@ def _run_Z(m, X, V):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_Z = m.zeros(6)
+    out_Z = m.zeros("Z")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -5033,7 +5161,7 @@ def _run_H(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_H = m.zeros(18)
+    out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
         branch_2_ups, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
@@ -5086,12 +5214,12 @@ def _run_H(m, X):
         ok & m.every((abs(rho2_1_ups) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(rho2_2_ups)
             > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(root_2_ups) > _TOLERANCE * 1.38293))
         )
-        out_H[[0, 1, 2][leg]] = axis_x_x
-        out_H[[3, 4, 5][leg]] = axis_x_y
-        out_H[[6, 7, 8][leg]] = axis_x_z
-        out_H[[9, 10, 11][leg]] = H_a_3_ups_x
-        out_H[[12, 13, 14][leg]] = H_a_3_ups_y
-        out_H[[15, 16, 17][leg]] = H_a_3_ups_z
+        out_H[_H_ups[0][leg]] = axis_x_x
+        out_H[_H_ups[1][leg]] = axis_x_y
+        out_H[_H_ups[2][leg]] = axis_x_z
+        out_H[_H_ups[3][leg]] = H_a_3_ups_x
+        out_H[_H_ups[4][leg]] = H_a_3_ups_y
+        out_H[_H_ups[5][leg]] = H_a_3_ups_z
     return ok, (out_H,)
 
 
@@ -5135,7 +5263,7 @@ def _run_Hk(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_Hk = m.zeros(18)
+    out_Hk = m.zeros("Hk")
     for leg, k in legs[0]:
         (
         branch_1_up, branch_2_up, up_base_frame_xx, up_base_frame_xy, up_base_frame_xz,
@@ -5349,21 +5477,21 @@ def _run_Hk(m, X):
             (abs(rho2_2_up) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(f_c1_up_t_3) >
             _TOLERANCE * 1.0) & (abs(size_c3_up) > _TOLERANCE * 1.0))
         )
-        out_Hk[[0][leg]] = axis_y_up_axes2_in_base_x
-        out_Hk[[3][leg]] = axis_y_up_axes2_in_base_y
-        out_Hk[[6][leg]] = axis_y_up_axes2_in_base_z
-        out_Hk[[9][leg]] = Hk_a_1_up_x
-        out_Hk[[12][leg]] = Hk_a_1_up_y
-        out_Hk[[15][leg]] = Hk_a_1_up_z
-        out_Hk[[1][leg]] = axis_z_up_axes2_in_base_x
-        out_Hk[[4][leg]] = axis_z_up_axes2_in_base_y
-        out_Hk[[7][leg]] = axis_z_up_axes2_in_base_z
-        out_Hk[[10][leg]] = Hk_a_2_up_x
-        out_Hk[[13][leg]] = Hk_a_2_up_y
-        out_Hk[[16][leg]] = Hk_a_2_up_z
-        out_Hk[[11][leg]] = mu_c3_up_in_base_x
-        out_Hk[[14][leg]] = mu_c3_up_in_base_y
-        out_Hk[[17][leg]] = mu_c3_up_in_base_z
+        out_Hk[_Hk_up[0][leg]] = axis_y_up_axes2_in_base_x
+        out_Hk[_Hk_up[1][leg]] = axis_y_up_axes2_in_base_y
+        out_Hk[_Hk_up[2][leg]] = axis_y_up_axes2_in_base_z
+        out_Hk[_Hk_up[3][leg]] = Hk_a_1_up_x
+        out_Hk[_Hk_up[4][leg]] = Hk_a_1_up_y
+        out_Hk[_Hk_up[5][leg]] = Hk_a_1_up_z
+        out_Hk[_Hk_up[6][leg]] = axis_z_up_axes2_in_base_x
+        out_Hk[_Hk_up[7][leg]] = axis_z_up_axes2_in_base_y
+        out_Hk[_Hk_up[8][leg]] = axis_z_up_axes2_in_base_z
+        out_Hk[_Hk_up[9][leg]] = Hk_a_2_up_x
+        out_Hk[_Hk_up[10][leg]] = Hk_a_2_up_y
+        out_Hk[_Hk_up[11][leg]] = Hk_a_2_up_z
+        out_Hk[_Hk_up[12][leg]] = mu_c3_up_in_base_x
+        out_Hk[_Hk_up[13][leg]] = mu_c3_up_in_base_y
+        out_Hk[_Hk_up[14][leg]] = mu_c3_up_in_base_z
     return ok, (out_Hk,)
 
 
@@ -5420,7 +5548,7 @@ def _run_constraint_bias(m, X, V):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_constraint_bias = m.zeros(3)
+    out_constraint_bias = m.zeros("constraint_bias")
     for leg, k in legs[0]:
         (
         branch_1_up, branch_2_up, up_base_frame_xx, up_base_frame_xy, up_base_frame_xz,
@@ -5821,9 +5949,9 @@ def _run_constraint_bias(m, X, V):
             _TOLERANCE * 1.0) & (abs(w_1_up_t_63) > _TOLERANCE * 1.35) & (abs(w_1_up_t_75) >
             _TOLERANCE * 1.35))
         )
-        out_constraint_bias[[0][leg]] = gamma_c1_up
-        out_constraint_bias[[1][leg]] = gamma_c2_up
-        out_constraint_bias[[2][leg]] = gamma_c3_up
+        out_constraint_bias[_constraint_bias_up[0][leg]] = gamma_c1_up
+        out_constraint_bias[_constraint_bias_up[1][leg]] = gamma_c2_up
+        out_constraint_bias[_constraint_bias_up[2][leg]] = gamma_c3_up
     return ok, (out_constraint_bias,)
 
 
@@ -5897,9 +6025,9 @@ def _run_required(m, X, V, A):
     alpha_z = A_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_required = m.zeros(6)
-    out_H = m.zeros(18)
-    out_Hk = m.zeros(18)
+    out_required = m.zeros("required")
+    out_H = m.zeros("H")
+    out_Hk = m.zeros("Hk")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -6160,12 +6288,12 @@ def _run_required(m, X, V, A):
         sums = m.added(sums, leg, (
         c_ups_in_base_x, c_ups_in_base_y, c_ups_in_base_z, R_a_t, R_a_t_2, R_a_t_3,
         ))
-        out_H[[0, 1, 2][leg]] = axis_x_x
-        out_H[[3, 4, 5][leg]] = axis_x_y
-        out_H[[6, 7, 8][leg]] = axis_x_z
-        out_H[[9, 10, 11][leg]] = H_a_3_ups_x
-        out_H[[12, 13, 14][leg]] = H_a_3_ups_y
-        out_H[[15, 16, 17][leg]] = H_a_3_ups_z
+        out_H[_H_ups[0][leg]] = axis_x_x
+        out_H[_H_ups[1][leg]] = axis_x_y
+        out_H[_H_ups[2][leg]] = axis_x_z
+        out_H[_H_ups[3][leg]] = H_a_3_ups_x
+        out_H[_H_ups[4][leg]] = H_a_3_ups_y
+        out_H[_H_ups[5][leg]] = H_a_3_ups_z
     total_ups_x, total_ups_y, total_ups_z, total_ups_x_2, total_ups_y_2, total_ups_z_2 = sums
     sums = [0.0] * 6
     for leg, k in legs[1]:
@@ -6802,21 +6930,21 @@ def _run_required(m, X, V, A):
         sums = m.added(sums, leg, (
         c_up_in_base_x, c_up_in_base_y, c_up_in_base_z, R_a_t_4, R_a_t_5, R_a_t_6,
         ))
-        out_Hk[[0][leg]] = axis_y_up_axes2_in_base_x
-        out_Hk[[3][leg]] = axis_y_up_axes2_in_base_y
-        out_Hk[[6][leg]] = axis_y_up_axes2_in_base_z
-        out_Hk[[9][leg]] = Hk_a_1_up_x
-        out_Hk[[12][leg]] = Hk_a_1_up_y
-        out_Hk[[15][leg]] = Hk_a_1_up_z
-        out_Hk[[1][leg]] = axis_z_up_axes2_in_base_x
-        out_Hk[[4][leg]] = axis_z_up_axes2_in_base_y
-        out_Hk[[7][leg]] = axis_z_up_axes2_in_base_z
-        out_Hk[[10][leg]] = Hk_a_2_up_x
-        out_Hk[[13][leg]] = Hk_a_2_up_y
-        out_Hk[[16][leg]] = Hk_a_2_up_z
-        out_Hk[[11][leg]] = mu_c3_up_in_base_x
-        out_Hk[[14][leg]] = mu_c3_up_in_base_y
-        out_Hk[[17][leg]] = mu_c3_up_in_base_z
+        out_Hk[_Hk_up[0][leg]] = axis_y_up_axes2_in_base_x
+        out_Hk[_Hk_up[1][leg]] = axis_y_up_axes2_in_base_y
+        out_Hk[_Hk_up[2][leg]] = axis_y_up_axes2_in_base_z
+        out_Hk[_Hk_up[3][leg]] = Hk_a_1_up_x
+        out_Hk[_Hk_up[4][leg]] = Hk_a_1_up_y
+        out_Hk[_Hk_up[5][leg]] = Hk_a_1_up_z
+        out_Hk[_Hk_up[6][leg]] = axis_z_up_axes2_in_base_x
+        out_Hk[_Hk_up[7][leg]] = axis_z_up_axes2_in_base_y
+        out_Hk[_Hk_up[8][leg]] = axis_z_up_axes2_in_base_z
+        out_Hk[_Hk_up[9][leg]] = Hk_a_2_up_x
+        out_Hk[_Hk_up[10][leg]] = Hk_a_2_up_y
+        out_Hk[_Hk_up[11][leg]] = Hk_a_2_up_z
+        out_Hk[_Hk_up[12][leg]] = mu_c3_up_in_base_x
+        out_Hk[_Hk_up[13][leg]] = mu_c3_up_in_base_y
+        out_Hk[_Hk_up[14][leg]] = mu_c3_up_in_base_z
     total_up_x, total_up_y, total_up_z, total_up_x_2, total_up_y_2, total_up_z_2 = sums
     # (E4) force that actuators and external wrench must give
     R_t_x = f_p_x - total_up_x - total_ups_x
@@ -6876,7 +7004,7 @@ def _run_inverse_kinematics(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_q = m.zeros(12)
+    out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
         branch_1_ups, branch_2_ups, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
@@ -6929,9 +7057,9 @@ def _run_inverse_kinematics(m, X):
         ok & m.every((abs(rho2_1_ups) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(rho2_2_ups)
             > _TOLERANCE * _TOLERANCE * 1.9124953849))
         )
-        out_q[[0, 3, 6][leg]] = q_1_ups
-        out_q[[1, 4, 7][leg]] = q_2_ups
-        out_q[[2, 5, 8][leg]] = root_2_ups
+        out_q[_q_ups[0][leg]] = q_1_ups
+        out_q[_q_ups[1][leg]] = q_2_ups
+        out_q[_q_ups[2][leg]] = root_2_ups
     for leg, k in legs[1]:
         (
         branch_1_up, branch_2_up, up_base_frame_xx, up_base_frame_xy, up_base_frame_xz,
@@ -6978,9 +7106,9 @@ def _run_inverse_kinematics(m, X):
         ok & m.every((abs(rho2_1_up) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
             (abs(rho2_2_up) > _TOLERANCE * _TOLERANCE * 1.8225000000000002))
         )
-        out_q[[9][leg]] = q_1_up
-        out_q[[10][leg]] = q_2_up
-        out_q[[11][leg]] = root_2_up
+        out_q[_q_up[0][leg]] = q_1_up
+        out_q[_q_up[1][leg]] = q_2_up
+        out_q[_q_up[2][leg]] = root_2_up
     return ok, (out_q,)
 
 
@@ -7037,7 +7165,7 @@ def _run_joint_rates(m, X, V):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_qd = m.zeros(12)
+    out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
         branch_1_ups, branch_2_ups, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
@@ -7116,9 +7244,9 @@ def _run_joint_rates(m, X, V):
             > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(root_1_ups) > _TOLERANCE * 1.38293) &
             (abs(root_2_ups) > _TOLERANCE * 1.38293))
         )
-        out_qd[[0, 3, 6][leg]] = qd_1_ups
-        out_qd[[1, 4, 7][leg]] = qd_2_ups
-        out_qd[[2, 5, 8][leg]] = S_dot_ups_tip_x
+        out_qd[_qd_ups[0][leg]] = qd_1_ups
+        out_qd[_qd_ups[1][leg]] = qd_2_ups
+        out_qd[_qd_ups[2][leg]] = S_dot_ups_tip_x
     for leg, k in legs[1]:
         (
         branch_1_up, branch_2_up, up_base_frame_xx, up_base_frame_xy, up_base_frame_xz,
@@ -7428,9 +7556,9 @@ def _run_joint_rates(m, X, V):
             _TOLERANCE * 1.0) & (abs(w_1_up_t_63) > _TOLERANCE * 1.35) & (abs(w_1_up_t_75) >
             _TOLERANCE * 1.35))
         )
-        out_qd[[9][leg]] = qd_1_up_t_4
-        out_qd[[10][leg]] = qd_1_up_t_8
-        out_qd[[11][leg]] = S_dot_up_tip_x
+        out_qd[_qd_up[0][leg]] = qd_1_up_t_4
+        out_qd[_qd_up[1][leg]] = qd_1_up_t_8
+        out_qd[_qd_up[2][leg]] = S_dot_up_tip_x
     return ok, (out_qd,)
 
 
@@ -7500,7 +7628,7 @@ def _run_joint_accelerations(m, X, V, A):
     alpha_z = A_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_qdd = m.zeros(12)
+    out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
         branch_1_ups, branch_2_ups, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
@@ -7617,9 +7745,9 @@ def _run_joint_accelerations(m, X, V, A):
             > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(root_1_ups) > _TOLERANCE * 1.38293) &
             (abs(root_2_ups) > _TOLERANCE * 1.38293))
         )
-        out_qdd[[0, 3, 6][leg]] = qdd_1_ups
-        out_qdd[[1, 4, 7][leg]] = qdd_2_ups
-        out_qdd[[2, 5, 8][leg]] = rel_ups_x
+        out_qdd[_qdd_ups[0][leg]] = qdd_1_ups
+        out_qdd[_qdd_ups[1][leg]] = qdd_2_ups
+        out_qdd[_qdd_ups[2][leg]] = rel_ups_x
     for leg, k in legs[1]:
         (
         branch_1_up, branch_2_up, up_base_frame_xx, up_base_frame_xy, up_base_frame_xz,
@@ -8064,9 +8192,9 @@ def _run_joint_accelerations(m, X, V, A):
             _TOLERANCE * 1.0) & (abs(w_1_up_t_63) > _TOLERANCE * 1.35) & (abs(w_1_up_t_75) >
             _TOLERANCE * 1.35))
         )
-        out_qdd[[9][leg]] = qdd_1_up_t_4
-        out_qdd[[10][leg]] = qdd_1_up_t_8
-        out_qdd[[11][leg]] = rel_up_x
+        out_qdd[_qdd_up[0][leg]] = qdd_1_up_t_4
+        out_qdd[_qdd_up[1][leg]] = qdd_1_up_t_8
+        out_qdd[_qdd_up[2][leg]] = rel_up_x
     return ok, (out_qdd,)
 
 
@@ -8110,7 +8238,7 @@ def _run_constraints(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_constraints = m.zeros(3)
+    out_constraints = m.zeros("constraints")
     for leg, k in legs[0]:
         (
         branch_1_up, branch_2_up, up_base_frame_xx, up_base_frame_xy, up_base_frame_xz,
@@ -8254,9 +8382,9 @@ def _run_constraints(m, X):
             (abs(rho2_2_up) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(f_c1_up_t) >
             _TOLERANCE * 1.0) & (abs(size_c3_up) > _TOLERANCE * 1.0))
         )
-        out_constraints[[0][leg]] = phi_c1_up
-        out_constraints[[1][leg]] = phi_c2_up
-        out_constraints[[2][leg]] = phi_c3_up
+        out_constraints[_constraints_up[0][leg]] = phi_c1_up
+        out_constraints[_constraints_up[1][leg]] = phi_c2_up
+        out_constraints[_constraints_up[2][leg]] = phi_c3_up
     return ok, (out_constraints,)
 
 
@@ -8326,9 +8454,9 @@ def _run_legs(m, X, V, A):
     alpha_z = A_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_leg_force = m.zeros(24)
-    out_drive = m.zeros(18)
-    out_constraint_direction = m.zeros(18)
+    out_leg_force = m.zeros("leg_force")
+    out_drive = m.zeros("drive")
+    out_constraint_direction = m.zeros("constraint_direction")
     for leg, k in legs[0]:
         (
         J_group_2_ups_xy, J_group_2_ups_xz, J_group_2_ups_yz, Sigma_2_ups_xx, Sigma_2_ups_yy,
@@ -8525,12 +8653,12 @@ def _run_legs(m, X, V, A):
             > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(root_1_ups) > _TOLERANCE * 1.38293) &
             (abs(root_2_ups) > _TOLERANCE * 1.38293))
         )
-        out_leg_force[[0, 6, 12][leg]] = c_true_ups_in_base_x
-        out_leg_force[[1, 7, 13][leg]] = c_true_ups_in_base_y
-        out_leg_force[[2, 8, 14][leg]] = c_true_ups_in_base_z
-        out_drive[[0, 6, 12][leg]] = axis_x_x
-        out_drive[[1, 7, 13][leg]] = axis_x_y
-        out_drive[[2, 8, 14][leg]] = axis_x_z
+        out_leg_force[_leg_force_ups[0][leg]] = c_true_ups_in_base_x
+        out_leg_force[_leg_force_ups[1][leg]] = c_true_ups_in_base_y
+        out_leg_force[_leg_force_ups[2][leg]] = c_true_ups_in_base_z
+        out_drive[_drive_ups[0][leg]] = axis_x_x
+        out_drive[_drive_ups[1][leg]] = axis_x_y
+        out_drive[_drive_ups[2][leg]] = axis_x_z
     for leg, k in legs[1]:
         (
         J_group_2_up_xy, J_group_2_up_xz, J_group_2_up_yz, Sigma_2_up_xx, Sigma_2_up_yy,
@@ -9151,27 +9279,27 @@ def _run_legs(m, X, V, A):
             _TOLERANCE * 1.0) & (abs(w_1_up_t_63) > _TOLERANCE * 1.35) & (abs(w_1_up_t_75) >
             _TOLERANCE * 1.35))
         )
-        out_leg_force[[18][leg]] = c_up_in_base_x
-        out_leg_force[[19][leg]] = c_up_in_base_y
-        out_leg_force[[20][leg]] = c_up_in_base_z
-        out_leg_force[[21][leg]] = c_m_up_in_base_x
-        out_leg_force[[22][leg]] = c_m_up_in_base_y
-        out_leg_force[[23][leg]] = c_m_up_in_base_z
-        out_constraint_direction[[0][leg]] = axis_y_up_axes2_in_base_x
-        out_constraint_direction[[1][leg]] = axis_y_up_axes2_in_base_y
-        out_constraint_direction[[2][leg]] = axis_y_up_axes2_in_base_z
-        out_constraint_direction[[3][leg]] = mu_c1_up_in_base_x
-        out_constraint_direction[[4][leg]] = mu_c1_up_in_base_y
-        out_constraint_direction[[5][leg]] = mu_c1_up_in_base_z
-        out_constraint_direction[[6][leg]] = axis_z_up_axes2_in_base_x
-        out_constraint_direction[[7][leg]] = axis_z_up_axes2_in_base_y
-        out_constraint_direction[[8][leg]] = axis_z_up_axes2_in_base_z
-        out_constraint_direction[[9][leg]] = mu_c2_up_in_base_x
-        out_constraint_direction[[10][leg]] = mu_c2_up_in_base_y
-        out_constraint_direction[[11][leg]] = mu_c2_up_in_base_z
-        out_constraint_direction[[15][leg]] = mu_c3_up_in_base_x
-        out_constraint_direction[[16][leg]] = mu_c3_up_in_base_y
-        out_constraint_direction[[17][leg]] = mu_c3_up_in_base_z
+        out_leg_force[_leg_force_up[0][leg]] = c_up_in_base_x
+        out_leg_force[_leg_force_up[1][leg]] = c_up_in_base_y
+        out_leg_force[_leg_force_up[2][leg]] = c_up_in_base_z
+        out_leg_force[_leg_force_up[3][leg]] = c_m_up_in_base_x
+        out_leg_force[_leg_force_up[4][leg]] = c_m_up_in_base_y
+        out_leg_force[_leg_force_up[5][leg]] = c_m_up_in_base_z
+        out_constraint_direction[_constraint_direction_up[0][leg]] = axis_y_up_axes2_in_base_x
+        out_constraint_direction[_constraint_direction_up[1][leg]] = axis_y_up_axes2_in_base_y
+        out_constraint_direction[_constraint_direction_up[2][leg]] = axis_y_up_axes2_in_base_z
+        out_constraint_direction[_constraint_direction_up[3][leg]] = mu_c1_up_in_base_x
+        out_constraint_direction[_constraint_direction_up[4][leg]] = mu_c1_up_in_base_y
+        out_constraint_direction[_constraint_direction_up[5][leg]] = mu_c1_up_in_base_z
+        out_constraint_direction[_constraint_direction_up[6][leg]] = axis_z_up_axes2_in_base_x
+        out_constraint_direction[_constraint_direction_up[7][leg]] = axis_z_up_axes2_in_base_y
+        out_constraint_direction[_constraint_direction_up[8][leg]] = axis_z_up_axes2_in_base_z
+        out_constraint_direction[_constraint_direction_up[9][leg]] = mu_c2_up_in_base_x
+        out_constraint_direction[_constraint_direction_up[10][leg]] = mu_c2_up_in_base_y
+        out_constraint_direction[_constraint_direction_up[11][leg]] = mu_c2_up_in_base_z
+        out_constraint_direction[_constraint_direction_up[12][leg]] = mu_c3_up_in_base_x
+        out_constraint_direction[_constraint_direction_up[13][leg]] = mu_c3_up_in_base_y
+        out_constraint_direction[_constraint_direction_up[14][leg]] = mu_c3_up_in_base_z
     return ok, (out_leg_force, out_drive, out_constraint_direction,)
 
 
@@ -9216,7 +9344,7 @@ def _run_potential(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_potential = m.zeros(1)
+    out_potential = m.zeros("potential")
     # (V1) potential energy
     potential_t = (
     gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + m_star*t_x) +
@@ -9414,11 +9542,11 @@ def _run_condition(m, X):
     reached = True
     clear = True
     valid = valid & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_H = m.zeros(18)
-    out_Hk = m.zeros(18)
-    out_lengths = m.zeros(2)
-    out_pivots = m.zeros(4)
-    out_reach = m.zeros(4)
+    out_H = m.zeros("H")
+    out_Hk = m.zeros("Hk")
+    out_lengths = m.zeros("lengths")
+    out_pivots = m.zeros("pivots")
+    out_reach = m.zeros("reach")
     out_lengths[1] = 1.374771449614444
     sums = [0.0] * 1
     for leg, k in legs[0]:
@@ -9497,13 +9625,13 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         spread_t_8,
         ))
-        out_H[[0, 1, 2][leg]] = axis_x_x
-        out_H[[3, 4, 5][leg]] = axis_x_y
-        out_H[[6, 7, 8][leg]] = axis_x_z
-        out_H[[9, 10, 11][leg]] = H_a_3_ups_x
-        out_H[[12, 13, 14][leg]] = H_a_3_ups_y
-        out_H[[15, 16, 17][leg]] = H_a_3_ups_z
-        out_pivots[[0, 1, 2][leg]] = least_pivots
+        out_H[_H_ups[0][leg]] = axis_x_x
+        out_H[_H_ups[1][leg]] = axis_x_y
+        out_H[_H_ups[2][leg]] = axis_x_z
+        out_H[_H_ups[3][leg]] = H_a_3_ups_x
+        out_H[_H_ups[4][leg]] = H_a_3_ups_y
+        out_H[_H_ups[5][leg]] = H_a_3_ups_z
+        out_pivots[_pivots_ups[0][leg]] = least_pivots
     total_ups, = sums
     sums = [0.0] * 1
     for leg, k in legs[1]:
@@ -9846,22 +9974,22 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         spread_t_4,
         ))
-        out_Hk[[0][leg]] = axis_y_up_axes2_in_base_x
-        out_Hk[[3][leg]] = axis_y_up_axes2_in_base_y
-        out_Hk[[6][leg]] = axis_y_up_axes2_in_base_z
-        out_Hk[[9][leg]] = Hk_a_1_up_x
-        out_Hk[[12][leg]] = Hk_a_1_up_y
-        out_Hk[[15][leg]] = Hk_a_1_up_z
-        out_Hk[[1][leg]] = axis_z_up_axes2_in_base_x
-        out_Hk[[4][leg]] = axis_z_up_axes2_in_base_y
-        out_Hk[[7][leg]] = axis_z_up_axes2_in_base_z
-        out_Hk[[10][leg]] = Hk_a_2_up_x
-        out_Hk[[13][leg]] = Hk_a_2_up_y
-        out_Hk[[16][leg]] = Hk_a_2_up_z
-        out_Hk[[11][leg]] = mu_c3_up_in_base_x
-        out_Hk[[14][leg]] = mu_c3_up_in_base_y
-        out_Hk[[17][leg]] = mu_c3_up_in_base_z
-        out_pivots[[3][leg]] = least_pivots_2
+        out_Hk[_Hk_up[0][leg]] = axis_y_up_axes2_in_base_x
+        out_Hk[_Hk_up[1][leg]] = axis_y_up_axes2_in_base_y
+        out_Hk[_Hk_up[2][leg]] = axis_y_up_axes2_in_base_z
+        out_Hk[_Hk_up[3][leg]] = Hk_a_1_up_x
+        out_Hk[_Hk_up[4][leg]] = Hk_a_1_up_y
+        out_Hk[_Hk_up[5][leg]] = Hk_a_1_up_z
+        out_Hk[_Hk_up[6][leg]] = axis_z_up_axes2_in_base_x
+        out_Hk[_Hk_up[7][leg]] = axis_z_up_axes2_in_base_y
+        out_Hk[_Hk_up[8][leg]] = axis_z_up_axes2_in_base_z
+        out_Hk[_Hk_up[9][leg]] = Hk_a_2_up_x
+        out_Hk[_Hk_up[10][leg]] = Hk_a_2_up_y
+        out_Hk[_Hk_up[11][leg]] = Hk_a_2_up_z
+        out_Hk[_Hk_up[12][leg]] = mu_c3_up_in_base_x
+        out_Hk[_Hk_up[13][leg]] = mu_c3_up_in_base_y
+        out_Hk[_Hk_up[14][leg]] = mu_c3_up_in_base_z
+        out_pivots[_pivots_up[0][leg]] = least_pivots_2
     total_up, = sums
     # (C2) rms distance of the platform points from their centroid
     spread = sqrt(0.25*total_up + 0.25*total_ups)
@@ -9874,61 +10002,61 @@ _DEFAULT = Parameters()
 
 
 def _steps_M(m, X):
-    M_of_M, = m.run(_run_M, ((6, 6),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
     return (M_of_M,)
 
 
 def _steps_Z(m, X, V):
-    Z_of_Z, = m.run(_run_Z, ((6,),), X, V)
+    Z_of_Z, = m.run(_run_Z, ("Z",), X, V)
     return (Z_of_Z,)
 
 
 def _steps_H(m, X):
-    H_of_H, = m.run(_run_H, ((6, 3),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 
 def _steps_Hk(m, X):
-    Hk_of_Hk, = m.run(_run_Hk, ((6, 3),), X)
+    Hk_of_Hk, = m.run(_run_Hk, ("Hk",), X)
     return (Hk_of_Hk,)
 
 
 def _steps_constraints(m, X):
-    constraints_of_constraints, = m.run(_run_constraints, ((3,),), X)
+    constraints_of_constraints, = m.run(_run_constraints, ("constraints",), X)
     return (constraints_of_constraints,)
 
 
 def _steps_constraint_bias(m, X, V):
-    constraint_bias_of_constraint_bias, = m.run(_run_constraint_bias, ((3,),), X, V)
+    constraint_bias_of_constraint_bias, = m.run(_run_constraint_bias, ("constraint_bias",), X, V)
     return (constraint_bias_of_constraint_bias,)
 
 
 def _steps_inverse_kinematics(m, X):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((12,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     return (q_of_inverse_kinematics,)
 
 
 def _steps_joint_rates(m, X, V):
-    qd_of_joint_rates, = m.run(_run_joint_rates, ((12,),), X, V)
+    qd_of_joint_rates, = m.run(_run_joint_rates, ("qd",), X, V)
     return (qd_of_joint_rates,)
 
 
 def _steps_joint_accelerations(m, X, V, A):
-    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ((12,),), X, V, A)
+    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
     return (qdd_of_joint_accelerations,)
 
 
 def _steps_dynamics(m, X, V):
     (
     M_of_dynamics, Z_of_dynamics, H_of_dynamics, Hk_of_dynamics, constraint_bias_of_dynamics,
-    ) = m.run(_run_dynamics, ((6, 6), (6,), (6, 3), (6, 3), (3,)), X, V)
+    ) = m.run(_run_dynamics, ("M", "Z", "H", "Hk", "constraint_bias"), X, V)
     return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
 
 
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
     (
     required_of_required, H_of_required, Hk_of_required,
-    ) = m.run(_run_required, ((6,), (6, 3), (6, 3)), X, V, A)
+    ) = m.run(_run_required, ("required", "H", "Hk"), X, V, A)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     beside_3 = np.concatenate((H_of_required, Hk_of_required), axis=1)
@@ -9940,7 +10068,7 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
 def _steps_forward_dynamics(m, X, V, tau, wrench):
     (
     M_of_dynamics, Z_of_dynamics, H_of_dynamics, Hk_of_dynamics, constraint_bias_of_dynamics,
-    ) = m.run(_run_dynamics, ((6, 6), (6,), (6, 3), (6, 3), (3,)), X, V)
+    ) = m.run(_run_dynamics, ("M", "Z", "H", "Hk", "constraint_bias"), X, V)
     times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
     extend_2 = wrench
     add_3 = times_1 + extend_2
@@ -9961,7 +10089,7 @@ def _steps_complete_acceleration(m, X, V, A, wrench):
 def _steps_leg_reactions(m, X, V, A, wrench):
     (
     required_of_required, H_of_required, Hk_of_required,
-    ) = m.run(_run_required, ((6,), (6, 3), (6, 3)), X, V, A)
+    ) = m.run(_run_required, ("required", "H", "Hk"), X, V, A)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     beside_3 = np.concatenate((H_of_required, Hk_of_required), axis=1)
@@ -9969,22 +10097,22 @@ def _steps_leg_reactions(m, X, V, A, wrench):
     split_5, split_6 = solve_4[:3], solve_4[3:]
     (
     leg_force_of_legs, drive_of_legs, constraint_direction_of_legs,
-    ) = m.run(_run_legs, ((4, 6), (3, 6), (3, 6)), X, V, A)
+    ) = m.run(_run_legs, ("leg_force", "drive", "constraint_direction"), X, V, A)
     add_forces_7 = _with_forces(leg_force_of_legs, split_5, drive_of_legs, [0, 1, 2])
     add_forces_8 = _with_forces(add_forces_7, split_6, constraint_direction_of_legs, [3, 3, 3])
     return (add_forces_8,)
 
 
 def _steps_energy(m, X, V):
-    M_of_M, = m.run(_run_M, ((6, 6),), X)
-    potential_of_potential, = m.run(_run_potential, ((1,),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
+    potential_of_potential, = m.run(_run_potential, ("potential",), X)
     half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
     entry_2 = potential_of_potential[0]
     return (half_form_1, entry_2,)
 
 
 def _steps_null_space(m, X):
-    H_of_H, = m.run(_run_H, ((6, 3),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     null_basis_1 = _null_basis(H_of_H, 3)
     return (null_basis_1,)
 
@@ -9993,7 +10121,7 @@ def _steps_condition(m, X, length):
     (
     H_of_condition, Hk_of_condition, lengths_of_condition, pivots_of_condition,
         reach_of_condition,
-    ) = m.run(_run_condition, ((6, 3), (6, 3), (2,), (4,), (4,)), X)
+    ) = m.run(_run_condition, ("H", "Hk", "lengths", "pivots", "reach"), X)
     choose_length_1 = _chosen_length(lengths_of_condition, length)
     divide_rows_2 = _rows_divided(H_of_condition, choose_length_1, [3, 4, 5])
     singular_values_3 = _singular_values(divide_rows_2)
@@ -10004,7 +10132,7 @@ def _steps_condition_constrained(m, X, length):
     (
     H_of_condition, Hk_of_condition, lengths_of_condition, pivots_of_condition,
         reach_of_condition,
-    ) = m.run(_run_condition, ((6, 3), (6, 3), (2,), (4,), (4,)), X)
+    ) = m.run(_run_condition, ("H", "Hk", "lengths", "pivots", "reach"), X)
     beside_1 = np.concatenate((H_of_condition, Hk_of_condition), axis=1)
     choose_length_2 = _chosen_length(lengths_of_condition, length)
     divide_rows_3 = _rows_divided(beside_1, choose_length_2, [3, 4, 5])
@@ -10013,18 +10141,18 @@ def _steps_condition_constrained(m, X, length):
 
 
 def _steps_mismatch(m, X, q_actuated):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((12,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     take_1 = q_of_inverse_kinematics[[2, 5, 8]]
     subtract_2 = q_actuated - take_1
-    constraints_of_constraints, = m.run(_run_constraints, ((3,),), X)
+    constraints_of_constraints, = m.run(_run_constraints, ("constraints",), X)
     negative_3 = -constraints_of_constraints
     join_4 = np.concatenate((subtract_2, negative_3))
     return (join_4,)
 
 
 def _steps_slope(m, X):
-    H_of_H, = m.run(_run_H, ((6, 3),), X)
-    Hk_of_Hk, = m.run(_run_Hk, ((6, 3),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
+    Hk_of_Hk, = m.run(_run_Hk, ("Hk",), X)
     beside_1 = np.concatenate((H_of_H, Hk_of_Hk), axis=1)
     return (beside_1,)
 
@@ -10035,13 +10163,13 @@ def _steps_forward_kinematics(m, q_actuated, X0):
 
 
 def _steps_constraint_gap(m, X):
-    constraints_of_constraints, = m.run(_run_constraints, ((3,),), X)
+    constraints_of_constraints, = m.run(_run_constraints, ("constraints",), X)
     negative_1 = -constraints_of_constraints
     return (negative_1,)
 
 
 def _steps_constraint_slope(m, X):
-    Hk_of_Hk, = m.run(_run_Hk, ((6, 3),), X)
+    Hk_of_Hk, = m.run(_run_Hk, ("Hk",), X)
     return (Hk_of_Hk,)
 
 

@@ -72,6 +72,81 @@ NJ = 6
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
 
+_SHAPES = {  # of the arrays that functions give
+    "M": (6, 6),
+    "Z": (6,),
+    "H": (6, 3),
+    "Hk": (6, 3),
+    "constraint_bias": (3,),
+    "required": (6,),
+    "q": (6,),
+    "qd": (6,),
+    "qdd": (6,),
+    "constraints": (3,),
+    "leg_force": (3, 3),
+    "drive": (3, 3),
+    "constraint_direction": (3, 3),
+    "potential": (1,),
+    "lengths": (2,),
+    "pivots": (3,),
+    "reach": (3,),
+}
+# Where the entries of a leg type's legs stand in these arrays, row by row.
+_H_prs = (
+    [0, 1, 2],
+    [3, 4, 5],
+    [6, 7, 8],
+    [9, 10, 11],
+    [12, 13, 14],
+    [15, 16, 17],
+)
+_Hk_prs = (
+    [0, 1, 2],
+    [3, 4, 5],
+    [6, 7, 8],
+    [9, 10, 11],
+    [12, 13, 14],
+    [15, 16, 17],
+)
+_constraint_bias_prs = (
+    [0, 1, 2],
+)
+_q_prs = (
+    [0, 2, 4],
+    [1, 3, 5],
+)
+_qd_prs = (
+    [0, 2, 4],
+    [1, 3, 5],
+)
+_qdd_prs = (
+    [0, 2, 4],
+    [1, 3, 5],
+)
+_constraints_prs = (
+    [0, 1, 2],
+)
+_leg_force_prs = (
+    [0, 3, 6],
+    [1, 4, 7],
+    [2, 5, 8],
+)
+_drive_prs = (
+    [0, 3, 6],
+    [1, 4, 7],
+    [2, 5, 8],
+)
+_constraint_direction_prs = (
+    [0, 3, 6],
+    [1, 4, 7],
+    [2, 5, 8],
+)
+_pivots_prs = (
+    [0, 1, 2],
+)
+_reach_prs = (
+    [0, 1, 2],
+)
 _DRIVEN_JOINTS = (0, 2, 4)
 
 _DEFAULTS = {
@@ -383,6 +458,7 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _prs = 3
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     gravity_z = p.gravity[2]
@@ -506,10 +582,10 @@ def _prepare(p):
     inv_root_2_t_2 = 1.0/root_2_t
     # (prs-V3) reciprocal vector 1
     inv_size = 1.0/size
-    total_prs_x = np.sum(np.broadcast_to(prs_platform_point_x, 3))
-    total_prs_y = np.sum(np.broadcast_to(prs_platform_point_y, 3))
-    total_prs_z = np.sum(np.broadcast_to(prs_platform_point_z, 3))
-    total_prs = np.sum(np.broadcast_to(size_t, 3))
+    total_prs_x = np.sum(np.broadcast_to(prs_platform_point_x, _prs))
+    total_prs_y = np.sum(np.broadcast_to(prs_platform_point_y, _prs))
+    total_prs_z = np.sum(np.broadcast_to(prs_platform_point_z, _prs))
+    total_prs = np.sum(np.broadcast_to(size_t, _prs))
     # (C1) centroid of the platform points
     b_c_x = 0.3333333333333333*total_prs_x
     b_c_y = 0.3333333333333333*total_prs_y
@@ -522,7 +598,7 @@ def _prepare(p):
                 Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y,
                 h_star_z, platform_mass,),
             (
-                (3,
+                (_prs,
         (J_2_zz, P_c1_t, branch_1, g_r0_x, g_r0_y, h_2_x, h_2_y, prs_base_frame_xx,
                     prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx, prs_base_frame_yy,
                     prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy, prs_base_frame_zz,
@@ -536,7 +612,7 @@ def _prepare(p):
         (J_star_t_6, J_star_t_8, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
                 h_star_z, platform_mass,),
             (
-                (3,
+                (_prs,
         (J_2_zz, P_c1_t, branch_1, h_2_x, h_2_y, prs_base_frame_xx, prs_base_frame_xy,
                     prs_base_frame_xz, prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz,
                     prs_base_frame_zx, prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x,
@@ -550,7 +626,7 @@ def _prepare(p):
         (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2,
                 Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
             (
-                (3,
+                (_prs,
         (J_2_zz, branch_1, g_r0_x, g_r0_y, h_2_x, h_2_y, prs_base_frame_xx, prs_base_frame_xy,
                     prs_base_frame_xz, prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz,
                     prs_base_frame_zx, prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x,
@@ -563,7 +639,7 @@ def _prepare(p):
         "H": (
         (),
             (
-                (3,
+                (_prs,
         (branch_1, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
                     prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy,
                     prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z,
@@ -575,7 +651,7 @@ def _prepare(p):
         "Hk": (
         (),
             (
-                (3,
+                (_prs,
         (prs_base_frame_xz, prs_base_frame_yz, prs_base_frame_zz, prs_platform_point_x,
                     prs_platform_point_y, prs_platform_point_z,),
                 ),
@@ -584,7 +660,7 @@ def _prepare(p):
         "constraint_bias": (
         (),
             (
-                (3,
+                (_prs,
         (prs_base_frame_xz, prs_base_frame_yz, prs_base_frame_zz, prs_platform_point_x,
                     prs_platform_point_y, prs_platform_point_z,),
                 ),
@@ -594,7 +670,7 @@ def _prepare(p):
         (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
                 gravity_z, h_star_x, h_star_y, h_star_z, platform_mass,),
             (
-                (3,
+                (_prs,
         (J_2_zz, branch_1, g_r0_x, g_r0_y, h_2_x, h_2_y, prs_base_frame_xx, prs_base_frame_xy,
                     prs_base_frame_xz, prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz,
                     prs_base_frame_zx, prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x,
@@ -607,7 +683,7 @@ def _prepare(p):
         "inverse_kinematics": (
         (),
             (
-                (3,
+                (_prs,
         (branch_1, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
                     prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy,
                     prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z,
@@ -619,7 +695,7 @@ def _prepare(p):
         "joint_rates": (
         (),
             (
-                (3,
+                (_prs,
         (branch_1, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
                     prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy,
                     prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z,
@@ -631,7 +707,7 @@ def _prepare(p):
         "joint_accelerations": (
         (),
             (
-                (3,
+                (_prs,
         (branch_1, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
                     prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy,
                     prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z,
@@ -643,7 +719,7 @@ def _prepare(p):
         "constraints": (
         (),
             (
-                (3,
+                (_prs,
         (prs_base_frame_xz, prs_base_frame_yz, prs_base_frame_zz, prs_base_point_x,
                     prs_base_point_y, prs_base_point_z, prs_platform_point_x,
                     prs_platform_point_y, prs_platform_point_z,),
@@ -653,7 +729,7 @@ def _prepare(p):
         "legs": (
         (),
             (
-                (3,
+                (_prs,
         (J_2_zz, branch_1, g_r0_x, g_r0_y, h_2_x, h_2_y, prs_base_frame_xx, prs_base_frame_xy,
                     prs_base_frame_xz, prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz,
                     prs_base_frame_zx, prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x,
@@ -666,7 +742,7 @@ def _prepare(p):
         "potential": (
         (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, platform_mass,),
             (
-                (3,
+                (_prs,
         (b_r0_x, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, potential_t, potential_t_2,
                     potential_t_3, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz,
                     prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx,
@@ -680,7 +756,7 @@ def _prepare(p):
         "condition": (
         (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
             (
-                (3,
+                (_prs,
         (branch_1, inv_root_2_t_2, inv_size, prs_base_frame_xx, prs_base_frame_xy,
                     prs_base_frame_xz, prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz,
                     prs_base_frame_zx, prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x,
@@ -730,16 +806,16 @@ class _Floats:
         """Shared values, and (leg, its values) for every leg of each loop."""
         return _constants(self.p, name)[:2]
 
-    def zeros(self, size):
-        return [0.0] * size
+    def zeros(self, name):
+        return [0.0] * math.prod(_SHAPES[name])
 
     def added(self, sums, leg, terms):
         """Sums over the legs so far."""
         return [a + b for a, b in zip(sums, terms)]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(shape)), np.nan) for shape in shapes]
+        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
         for k in range(self.states):
             try:
@@ -749,7 +825,7 @@ class _Floats:
             if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
                 for a, array in zip(found, arrays):
                     a[k] = array
-        return [a.T.reshape(*shape, self.states) for a, shape in zip(found, shapes)]
+        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
 
 
 class _Arrays:
@@ -765,8 +841,8 @@ class _Arrays:
         shared, _, columns = _constants(self.p, name)
         return shared, columns
 
-    def zeros(self, size):
-        return np.zeros((size, self.states))
+    def zeros(self, name):
+        return np.zeros((math.prod(_SHAPES[name]), self.states))
 
     def every(self, good):
         """Whether it holds for all legs."""
@@ -777,7 +853,7 @@ class _Arrays:
         shape = (legs.stop, self.states)
         return [np.add.reduce(np.broadcast_to(t, shape), axis=0) for t in terms]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
         ok, arrays = function(self, *vectors)
         for a in arrays:
@@ -785,7 +861,7 @@ class _Arrays:
         if not np.all(ok):
             for a in arrays:
                 a[:, ~ok] = np.nan
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
 
 class _Judged(_Arrays):
@@ -795,12 +871,12 @@ class _Judged(_Arrays):
         super().__init__(p, states)
         self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
         (valid, reached, clear), arrays = function(self, *vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
             self.failed[code] |= ~np.broadcast_to(good, self.states)
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -1204,11 +1280,11 @@ def _run_dynamics(m, X, V):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_M = m.zeros(36)
-    out_Z = m.zeros(6)
-    out_H = m.zeros(18)
-    out_Hk = m.zeros(18)
-    out_constraint_bias = m.zeros(3)
+    out_M = m.zeros("M")
+    out_Z = m.zeros("Z")
+    out_H = m.zeros("H")
+    out_Hk = m.zeros("Hk")
+    out_constraint_bias = m.zeros("constraint_bias")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -1448,19 +1524,19 @@ def _run_dynamics(m, X, V):
             M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2, M_aa_t_3, M_aa_t_4, M_aa_t_5,
             M_aa_t_6, U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,
         ))
-        out_H[[0, 1, 2][leg]] = w_1_in_base_x
-        out_H[[3, 4, 5][leg]] = w_1_in_base_y
-        out_H[[6, 7, 8][leg]] = w_1_in_base_z
-        out_H[[9, 10, 11][leg]] = H_a_1_x
-        out_H[[12, 13, 14][leg]] = H_a_1_y
-        out_H[[15, 16, 17][leg]] = H_a_1_z
-        out_Hk[[0, 1, 2][leg]] = prs_base_frame_xz
-        out_Hk[[3, 4, 5][leg]] = prs_base_frame_yz
-        out_Hk[[6, 7, 8][leg]] = prs_base_frame_zz
-        out_Hk[[9, 10, 11][leg]] = Hk_a_1_x
-        out_Hk[[12, 13, 14][leg]] = Hk_a_1_y
-        out_Hk[[15, 16, 17][leg]] = Hk_a_1_z
-        out_constraint_bias[[0, 1, 2][leg]] = u_1_tip_z
+        out_H[_H_prs[0][leg]] = w_1_in_base_x
+        out_H[_H_prs[1][leg]] = w_1_in_base_y
+        out_H[_H_prs[2][leg]] = w_1_in_base_z
+        out_H[_H_prs[3][leg]] = H_a_1_x
+        out_H[_H_prs[4][leg]] = H_a_1_y
+        out_H[_H_prs[5][leg]] = H_a_1_z
+        out_Hk[_Hk_prs[0][leg]] = prs_base_frame_xz
+        out_Hk[_Hk_prs[1][leg]] = prs_base_frame_yz
+        out_Hk[_Hk_prs[2][leg]] = prs_base_frame_zz
+        out_Hk[_Hk_prs[3][leg]] = Hk_a_1_x
+        out_Hk[_Hk_prs[4][leg]] = Hk_a_1_y
+        out_Hk[_Hk_prs[5][leg]] = Hk_a_1_z
+        out_constraint_bias[_constraint_bias_prs[0][leg]] = u_1_tip_z
     (
     total_prs_xx, total_prs_xy, total_prs_xz, total_prs_yy, total_prs_yz, total_prs_zz,
         total_prs_xx_2, total_prs_xy_2, total_prs_xz_2, total_prs_yx, total_prs_yy_2,
@@ -1583,7 +1659,7 @@ def _run_M(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_M = m.zeros(36)
+    out_M = m.zeros("M")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -1852,7 +1928,7 @@ def _run_Z(m, X, V):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_Z = m.zeros(6)
+    out_Z = m.zeros("Z")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -2051,7 +2127,7 @@ def _run_H(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_H = m.zeros(18)
+    out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
         branch_1, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
@@ -2116,12 +2192,12 @@ def _run_H(m, X):
         ok & m.every((disc_1 >= 0.0) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * root_2_t) &
             (abs(-v_2_t) > _TOLERANCE * size))
         )
-        out_H[[0, 1, 2][leg]] = w_1_in_base_x
-        out_H[[3, 4, 5][leg]] = w_1_in_base_y
-        out_H[[6, 7, 8][leg]] = w_1_in_base_z
-        out_H[[9, 10, 11][leg]] = H_a_1_x
-        out_H[[12, 13, 14][leg]] = H_a_1_y
-        out_H[[15, 16, 17][leg]] = H_a_1_z
+        out_H[_H_prs[0][leg]] = w_1_in_base_x
+        out_H[_H_prs[1][leg]] = w_1_in_base_y
+        out_H[_H_prs[2][leg]] = w_1_in_base_z
+        out_H[_H_prs[3][leg]] = H_a_1_x
+        out_H[_H_prs[4][leg]] = H_a_1_y
+        out_H[_H_prs[5][leg]] = H_a_1_z
     return ok, (out_H,)
 
 
@@ -2158,7 +2234,7 @@ def _run_Hk(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_Hk = m.zeros(18)
+    out_Hk = m.zeros("Hk")
     for leg, k in legs[0]:
         (
         prs_base_frame_xz, prs_base_frame_yz, prs_base_frame_zz, prs_platform_point_x,
@@ -2178,12 +2254,12 @@ def _run_Hk(m, X):
         Hk_a_1_x = prs_base_frame_zz*q_in_base_y - prs_base_frame_yz*q_in_base_z
         Hk_a_1_y = prs_base_frame_xz*q_in_base_z - prs_base_frame_zz*q_in_base_x
         Hk_a_1_z = prs_base_frame_yz*q_in_base_x - prs_base_frame_xz*q_in_base_y
-        out_Hk[[0, 1, 2][leg]] = prs_base_frame_xz
-        out_Hk[[3, 4, 5][leg]] = prs_base_frame_yz
-        out_Hk[[6, 7, 8][leg]] = prs_base_frame_zz
-        out_Hk[[9, 10, 11][leg]] = Hk_a_1_x
-        out_Hk[[12, 13, 14][leg]] = Hk_a_1_y
-        out_Hk[[15, 16, 17][leg]] = Hk_a_1_z
+        out_Hk[_Hk_prs[0][leg]] = prs_base_frame_xz
+        out_Hk[_Hk_prs[1][leg]] = prs_base_frame_yz
+        out_Hk[_Hk_prs[2][leg]] = prs_base_frame_zz
+        out_Hk[_Hk_prs[3][leg]] = Hk_a_1_x
+        out_Hk[_Hk_prs[4][leg]] = Hk_a_1_y
+        out_Hk[_Hk_prs[5][leg]] = Hk_a_1_z
     return ok, (out_Hk,)
 
 
@@ -2227,7 +2303,7 @@ def _run_constraint_bias(m, X, V):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_constraint_bias = m.zeros(3)
+    out_constraint_bias = m.zeros("constraint_bias")
     for leg, k in legs[0]:
         (
         prs_base_frame_xz, prs_base_frame_yz, prs_base_frame_zz, prs_platform_point_x,
@@ -2253,7 +2329,7 @@ def _run_constraint_bias(m, X, V):
             prs_base_frame_yz*(S_dot_t*omega_z - S_dot_t_3*omega_x) +
             prs_base_frame_zz*(S_dot_t_2*omega_x - S_dot_t*omega_y)
         )
-        out_constraint_bias[[0, 1, 2][leg]] = u_1_tip_z
+        out_constraint_bias[_constraint_bias_prs[0][leg]] = u_1_tip_z
     return ok, (out_constraint_bias,)
 
 
@@ -2327,9 +2403,9 @@ def _run_required(m, X, V, A):
     alpha_z = A_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_required = m.zeros(6)
-    out_H = m.zeros(18)
-    out_Hk = m.zeros(18)
+    out_required = m.zeros("required")
+    out_H = m.zeros("H")
+    out_Hk = m.zeros("Hk")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -2517,18 +2593,18 @@ def _run_required(m, X, V, A):
         sums = m.added(sums, leg, (
         c_in_base_x, c_in_base_y, c_in_base_z, R_a_t, R_a_t_2, R_a_t_3,
         ))
-        out_H[[0, 1, 2][leg]] = w_1_in_base_x
-        out_H[[3, 4, 5][leg]] = w_1_in_base_y
-        out_H[[6, 7, 8][leg]] = w_1_in_base_z
-        out_H[[9, 10, 11][leg]] = H_a_1_x
-        out_H[[12, 13, 14][leg]] = H_a_1_y
-        out_H[[15, 16, 17][leg]] = H_a_1_z
-        out_Hk[[0, 1, 2][leg]] = prs_base_frame_xz
-        out_Hk[[3, 4, 5][leg]] = prs_base_frame_yz
-        out_Hk[[6, 7, 8][leg]] = prs_base_frame_zz
-        out_Hk[[9, 10, 11][leg]] = Hk_a_1_x
-        out_Hk[[12, 13, 14][leg]] = Hk_a_1_y
-        out_Hk[[15, 16, 17][leg]] = Hk_a_1_z
+        out_H[_H_prs[0][leg]] = w_1_in_base_x
+        out_H[_H_prs[1][leg]] = w_1_in_base_y
+        out_H[_H_prs[2][leg]] = w_1_in_base_z
+        out_H[_H_prs[3][leg]] = H_a_1_x
+        out_H[_H_prs[4][leg]] = H_a_1_y
+        out_H[_H_prs[5][leg]] = H_a_1_z
+        out_Hk[_Hk_prs[0][leg]] = prs_base_frame_xz
+        out_Hk[_Hk_prs[1][leg]] = prs_base_frame_yz
+        out_Hk[_Hk_prs[2][leg]] = prs_base_frame_zz
+        out_Hk[_Hk_prs[3][leg]] = Hk_a_1_x
+        out_Hk[_Hk_prs[4][leg]] = Hk_a_1_y
+        out_Hk[_Hk_prs[5][leg]] = Hk_a_1_z
     total_prs_x, total_prs_y, total_prs_z, total_prs_x_2, total_prs_y_2, total_prs_z_2 = sums
     # (E4) force that actuators and external wrench must give
     R_t_x = f_p_x - total_prs_x
@@ -2588,7 +2664,7 @@ def _run_inverse_kinematics(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_q = m.zeros(6)
+    out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
         branch_1, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
@@ -2631,8 +2707,8 @@ def _run_inverse_kinematics(m, X):
             -inv_root_2*prs_platform_joint_offset_x*q_1_t)
         )
         ok = ok & m.every((disc_1 >= 0.0) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * root_2_t))
-        out_q[[0, 2, 4][leg]] = q_1
-        out_q[[1, 3, 5][leg]] = q_2
+        out_q[_q_prs[0][leg]] = q_1
+        out_q[_q_prs[1][leg]] = q_2
     return ok, (out_q,)
 
 
@@ -2689,7 +2765,7 @@ def _run_joint_rates(m, X, V):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_qd = m.zeros(6)
+    out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
         branch_1, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
@@ -2743,8 +2819,8 @@ def _run_joint_rates(m, X, V):
         ok & m.every((disc_1 >= 0.0) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * root_2_t) &
             (abs(-v_2_t) > _TOLERANCE * size))
         )
-        out_qd[[0, 2, 4][leg]] = qd_2_t
-        out_qd[[1, 3, 5][leg]] = -qd_2
+        out_qd[_qd_prs[0][leg]] = qd_2_t
+        out_qd[_qd_prs[1][leg]] = -qd_2
     return ok, (out_qd,)
 
 
@@ -2814,7 +2890,7 @@ def _run_joint_accelerations(m, X, V, A):
     alpha_z = A_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_qdd = m.zeros(6)
+    out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
         branch_1, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
@@ -2893,8 +2969,8 @@ def _run_joint_accelerations(m, X, V, A):
         ok & m.every((disc_1 >= 0.0) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * root_2_t) &
             (abs(-v_2_t) > _TOLERANCE * size))
         )
-        out_qdd[[0, 2, 4][leg]] = -qdd_1_t
-        out_qdd[[1, 3, 5][leg]] = -qdd_2
+        out_qdd[_qdd_prs[0][leg]] = -qdd_1_t
+        out_qdd[_qdd_prs[1][leg]] = -qdd_2
     return ok, (out_qdd,)
 
 
@@ -2937,7 +3013,7 @@ def _run_constraints(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_constraints = m.zeros(3)
+    out_constraints = m.zeros("constraints")
     for leg, k in legs[0]:
         (
         prs_base_frame_xz, prs_base_frame_yz, prs_base_frame_zz, prs_base_point_x,
@@ -2959,7 +3035,7 @@ def _run_constraints(m, X):
         )
         # (prs-K3) discriminant of the distance equation
         disc_1_t = S_x*prs_base_frame_xz + S_y*prs_base_frame_yz + S_z*prs_base_frame_zz
-        out_constraints[[0, 1, 2][leg]] = disc_1_t
+        out_constraints[_constraints_prs[0][leg]] = disc_1_t
     return ok, (out_constraints,)
 
 
@@ -3029,9 +3105,9 @@ def _run_legs(m, X, V, A):
     alpha_z = A_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_leg_force = m.zeros(9)
-    out_drive = m.zeros(9)
-    out_constraint_direction = m.zeros(9)
+    out_leg_force = m.zeros("leg_force")
+    out_drive = m.zeros("drive")
+    out_constraint_direction = m.zeros("constraint_direction")
     for leg, k in legs[0]:
         (
         J_2_zz, branch_1, g_r0_x, g_r0_y, h_2_x, h_2_y, prs_base_frame_xx, prs_base_frame_xy,
@@ -3145,15 +3221,15 @@ def _run_legs(m, X, V, A):
         ok & m.every((disc_1 >= 0.0) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * root_2_t) &
             (abs(-v_2_t_2) > _TOLERANCE * size))
         )
-        out_leg_force[[0, 3, 6][leg]] = c_in_base_x
-        out_leg_force[[1, 4, 7][leg]] = c_in_base_y
-        out_leg_force[[2, 5, 8][leg]] = c_in_base_z
-        out_drive[[0, 3, 6][leg]] = w_1_in_base_x
-        out_drive[[1, 4, 7][leg]] = w_1_in_base_y
-        out_drive[[2, 5, 8][leg]] = w_1_in_base_z
-        out_constraint_direction[[0, 3, 6][leg]] = prs_base_frame_xz
-        out_constraint_direction[[1, 4, 7][leg]] = prs_base_frame_yz
-        out_constraint_direction[[2, 5, 8][leg]] = prs_base_frame_zz
+        out_leg_force[_leg_force_prs[0][leg]] = c_in_base_x
+        out_leg_force[_leg_force_prs[1][leg]] = c_in_base_y
+        out_leg_force[_leg_force_prs[2][leg]] = c_in_base_z
+        out_drive[_drive_prs[0][leg]] = w_1_in_base_x
+        out_drive[_drive_prs[1][leg]] = w_1_in_base_y
+        out_drive[_drive_prs[2][leg]] = w_1_in_base_z
+        out_constraint_direction[_constraint_direction_prs[0][leg]] = prs_base_frame_xz
+        out_constraint_direction[_constraint_direction_prs[1][leg]] = prs_base_frame_yz
+        out_constraint_direction[_constraint_direction_prs[2][leg]] = prs_base_frame_zz
     return ok, (out_leg_force, out_drive, out_constraint_direction,)
 
 
@@ -3198,7 +3274,7 @@ def _run_potential(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_potential = m.zeros(1)
+    out_potential = m.zeros("potential")
     # (V1) potential energy
     potential_t_4 = (
     gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + platform_mass*t_x) +
@@ -3308,11 +3384,11 @@ def _run_condition(m, X):
     reached = True
     clear = True
     valid = valid & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_H = m.zeros(18)
-    out_Hk = m.zeros(18)
-    out_lengths = m.zeros(2)
-    out_pivots = m.zeros(3)
-    out_reach = m.zeros(3)
+    out_H = m.zeros("H")
+    out_Hk = m.zeros("Hk")
+    out_lengths = m.zeros("lengths")
+    out_pivots = m.zeros("pivots")
+    out_reach = m.zeros("reach")
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
@@ -3398,20 +3474,20 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         spread_t_5,
         ))
-        out_H[[0, 1, 2][leg]] = w_1_in_base_x
-        out_H[[3, 4, 5][leg]] = w_1_in_base_y
-        out_H[[6, 7, 8][leg]] = w_1_in_base_z
-        out_H[[9, 10, 11][leg]] = H_a_1_x
-        out_H[[12, 13, 14][leg]] = H_a_1_y
-        out_H[[15, 16, 17][leg]] = H_a_1_z
-        out_Hk[[0, 1, 2][leg]] = prs_base_frame_xz
-        out_Hk[[3, 4, 5][leg]] = prs_base_frame_yz
-        out_Hk[[6, 7, 8][leg]] = prs_base_frame_zz
-        out_Hk[[9, 10, 11][leg]] = Hk_a_1_x
-        out_Hk[[12, 13, 14][leg]] = Hk_a_1_y
-        out_Hk[[15, 16, 17][leg]] = Hk_a_1_z
-        out_pivots[[0, 1, 2][leg]] = least_pivots
-        out_reach[[0, 1, 2][leg]] = disc_1
+        out_H[_H_prs[0][leg]] = w_1_in_base_x
+        out_H[_H_prs[1][leg]] = w_1_in_base_y
+        out_H[_H_prs[2][leg]] = w_1_in_base_z
+        out_H[_H_prs[3][leg]] = H_a_1_x
+        out_H[_H_prs[4][leg]] = H_a_1_y
+        out_H[_H_prs[5][leg]] = H_a_1_z
+        out_Hk[_Hk_prs[0][leg]] = prs_base_frame_xz
+        out_Hk[_Hk_prs[1][leg]] = prs_base_frame_yz
+        out_Hk[_Hk_prs[2][leg]] = prs_base_frame_zz
+        out_Hk[_Hk_prs[3][leg]] = Hk_a_1_x
+        out_Hk[_Hk_prs[4][leg]] = Hk_a_1_y
+        out_Hk[_Hk_prs[5][leg]] = Hk_a_1_z
+        out_pivots[_pivots_prs[0][leg]] = least_pivots
+        out_reach[_reach_prs[0][leg]] = disc_1
     total_prs, = sums
     # (C2) rms distance of the platform points from their centroid
     spread = spread_t*sqrt(total_prs)
@@ -3424,61 +3500,61 @@ _DEFAULT = Parameters()
 
 
 def _steps_M(m, X):
-    M_of_M, = m.run(_run_M, ((6, 6),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
     return (M_of_M,)
 
 
 def _steps_Z(m, X, V):
-    Z_of_Z, = m.run(_run_Z, ((6,),), X, V)
+    Z_of_Z, = m.run(_run_Z, ("Z",), X, V)
     return (Z_of_Z,)
 
 
 def _steps_H(m, X):
-    H_of_H, = m.run(_run_H, ((6, 3),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 
 def _steps_Hk(m, X):
-    Hk_of_Hk, = m.run(_run_Hk, ((6, 3),), X)
+    Hk_of_Hk, = m.run(_run_Hk, ("Hk",), X)
     return (Hk_of_Hk,)
 
 
 def _steps_constraints(m, X):
-    constraints_of_constraints, = m.run(_run_constraints, ((3,),), X)
+    constraints_of_constraints, = m.run(_run_constraints, ("constraints",), X)
     return (constraints_of_constraints,)
 
 
 def _steps_constraint_bias(m, X, V):
-    constraint_bias_of_constraint_bias, = m.run(_run_constraint_bias, ((3,),), X, V)
+    constraint_bias_of_constraint_bias, = m.run(_run_constraint_bias, ("constraint_bias",), X, V)
     return (constraint_bias_of_constraint_bias,)
 
 
 def _steps_inverse_kinematics(m, X):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((6,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     return (q_of_inverse_kinematics,)
 
 
 def _steps_joint_rates(m, X, V):
-    qd_of_joint_rates, = m.run(_run_joint_rates, ((6,),), X, V)
+    qd_of_joint_rates, = m.run(_run_joint_rates, ("qd",), X, V)
     return (qd_of_joint_rates,)
 
 
 def _steps_joint_accelerations(m, X, V, A):
-    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ((6,),), X, V, A)
+    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
     return (qdd_of_joint_accelerations,)
 
 
 def _steps_dynamics(m, X, V):
     (
     M_of_dynamics, Z_of_dynamics, H_of_dynamics, Hk_of_dynamics, constraint_bias_of_dynamics,
-    ) = m.run(_run_dynamics, ((6, 6), (6,), (6, 3), (6, 3), (3,)), X, V)
+    ) = m.run(_run_dynamics, ("M", "Z", "H", "Hk", "constraint_bias"), X, V)
     return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
 
 
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
     (
     required_of_required, H_of_required, Hk_of_required,
-    ) = m.run(_run_required, ((6,), (6, 3), (6, 3)), X, V, A)
+    ) = m.run(_run_required, ("required", "H", "Hk"), X, V, A)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     beside_3 = np.concatenate((H_of_required, Hk_of_required), axis=1)
@@ -3490,7 +3566,7 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
 def _steps_forward_dynamics(m, X, V, tau, wrench):
     (
     M_of_dynamics, Z_of_dynamics, H_of_dynamics, Hk_of_dynamics, constraint_bias_of_dynamics,
-    ) = m.run(_run_dynamics, ((6, 6), (6,), (6, 3), (6, 3), (3,)), X, V)
+    ) = m.run(_run_dynamics, ("M", "Z", "H", "Hk", "constraint_bias"), X, V)
     times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
     extend_2 = wrench
     add_3 = times_1 + extend_2
@@ -3511,7 +3587,7 @@ def _steps_complete_acceleration(m, X, V, A, wrench):
 def _steps_leg_reactions(m, X, V, A, wrench):
     (
     required_of_required, H_of_required, Hk_of_required,
-    ) = m.run(_run_required, ((6,), (6, 3), (6, 3)), X, V, A)
+    ) = m.run(_run_required, ("required", "H", "Hk"), X, V, A)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     beside_3 = np.concatenate((H_of_required, Hk_of_required), axis=1)
@@ -3519,22 +3595,22 @@ def _steps_leg_reactions(m, X, V, A, wrench):
     split_5, split_6 = solve_4[:3], solve_4[3:]
     (
     leg_force_of_legs, drive_of_legs, constraint_direction_of_legs,
-    ) = m.run(_run_legs, ((3, 3), (3, 3), (3, 3)), X, V, A)
+    ) = m.run(_run_legs, ("leg_force", "drive", "constraint_direction"), X, V, A)
     add_forces_7 = _with_forces(leg_force_of_legs, split_5, drive_of_legs, [0, 1, 2])
     add_forces_8 = _with_forces(add_forces_7, split_6, constraint_direction_of_legs, [0, 1, 2])
     return (add_forces_8,)
 
 
 def _steps_energy(m, X, V):
-    M_of_M, = m.run(_run_M, ((6, 6),), X)
-    potential_of_potential, = m.run(_run_potential, ((1,),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
+    potential_of_potential, = m.run(_run_potential, ("potential",), X)
     half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
     entry_2 = potential_of_potential[0]
     return (half_form_1, entry_2,)
 
 
 def _steps_null_space(m, X):
-    H_of_H, = m.run(_run_H, ((6, 3),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     null_basis_1 = _null_basis(H_of_H, 3)
     return (null_basis_1,)
 
@@ -3543,7 +3619,7 @@ def _steps_condition(m, X, length):
     (
     H_of_condition, Hk_of_condition, lengths_of_condition, pivots_of_condition,
         reach_of_condition,
-    ) = m.run(_run_condition, ((6, 3), (6, 3), (2,), (3,), (3,)), X)
+    ) = m.run(_run_condition, ("H", "Hk", "lengths", "pivots", "reach"), X)
     choose_length_1 = _chosen_length(lengths_of_condition, length)
     divide_rows_2 = _rows_divided(H_of_condition, choose_length_1, [3, 4, 5])
     singular_values_3 = _singular_values(divide_rows_2)
@@ -3554,7 +3630,7 @@ def _steps_condition_constrained(m, X, length):
     (
     H_of_condition, Hk_of_condition, lengths_of_condition, pivots_of_condition,
         reach_of_condition,
-    ) = m.run(_run_condition, ((6, 3), (6, 3), (2,), (3,), (3,)), X)
+    ) = m.run(_run_condition, ("H", "Hk", "lengths", "pivots", "reach"), X)
     beside_1 = np.concatenate((H_of_condition, Hk_of_condition), axis=1)
     choose_length_2 = _chosen_length(lengths_of_condition, length)
     divide_rows_3 = _rows_divided(beside_1, choose_length_2, [3, 4, 5])
@@ -3563,18 +3639,18 @@ def _steps_condition_constrained(m, X, length):
 
 
 def _steps_mismatch(m, X, q_actuated):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((6,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     take_1 = q_of_inverse_kinematics[[0, 2, 4]]
     subtract_2 = q_actuated - take_1
-    constraints_of_constraints, = m.run(_run_constraints, ((3,),), X)
+    constraints_of_constraints, = m.run(_run_constraints, ("constraints",), X)
     negative_3 = -constraints_of_constraints
     join_4 = np.concatenate((subtract_2, negative_3))
     return (join_4,)
 
 
 def _steps_slope(m, X):
-    H_of_H, = m.run(_run_H, ((6, 3),), X)
-    Hk_of_Hk, = m.run(_run_Hk, ((6, 3),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
+    Hk_of_Hk, = m.run(_run_Hk, ("Hk",), X)
     beside_1 = np.concatenate((H_of_H, Hk_of_Hk), axis=1)
     return (beside_1,)
 
@@ -3585,13 +3661,13 @@ def _steps_forward_kinematics(m, q_actuated, X0):
 
 
 def _steps_constraint_gap(m, X):
-    constraints_of_constraints, = m.run(_run_constraints, ((3,),), X)
+    constraints_of_constraints, = m.run(_run_constraints, ("constraints",), X)
     negative_1 = -constraints_of_constraints
     return (negative_1,)
 
 
 def _steps_constraint_slope(m, X):
-    Hk_of_Hk, = m.run(_run_Hk, ((6, 3),), X)
+    Hk_of_Hk, = m.run(_run_Hk, ("Hk",), X)
     return (Hk_of_Hk,)
 
 

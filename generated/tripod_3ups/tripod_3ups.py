@@ -62,6 +62,55 @@ NJ = 9
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
 
+_SHAPES = {  # of the arrays that functions give
+    "M": (3, 3),
+    "Z": (3,),
+    "H": (3, 3),
+    "required": (3,),
+    "q": (9,),
+    "qd": (9,),
+    "qdd": (9,),
+    "leg_force": (3, 3),
+    "drive": (3, 3),
+    "potential": (1,),
+    "lengths": (2,),
+    "pivots": (3,),
+    "reach": (3,),
+}
+# Where the entries of a leg type's legs stand in these arrays, row by row.
+_H_ups = (
+    [0, 1, 2],
+    [3, 4, 5],
+    [6, 7, 8],
+)
+_q_ups = (
+    [0, 3, 6],
+    [1, 4, 7],
+    [2, 5, 8],
+)
+_qd_ups = (
+    [0, 3, 6],
+    [1, 4, 7],
+    [2, 5, 8],
+)
+_qdd_ups = (
+    [0, 3, 6],
+    [1, 4, 7],
+    [2, 5, 8],
+)
+_leg_force_ups = (
+    [0, 3, 6],
+    [1, 4, 7],
+    [2, 5, 8],
+)
+_drive_ups = (
+    [0, 3, 6],
+    [1, 4, 7],
+    [2, 5, 8],
+)
+_pivots_ups = (
+    [0, 1, 2],
+)
 _DRIVEN_JOINTS = (2, 5, 8)
 
 _DEFAULTS = {
@@ -367,6 +416,7 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _ups = 3
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     gravity_z = p.gravity[2]
@@ -502,13 +552,13 @@ def _prepare(p):
     ups_base_frame_xz*ups_base_point_x + ups_base_frame_yz*ups_base_point_y +
         ups_base_frame_zz*ups_base_point_z
     )
-    total_ups = np.sum(np.broadcast_to(ups_link3_mass, 3))
-    total_ups_x = np.sum(np.broadcast_to(h_star_t_4, 3))
-    total_ups_y = np.sum(np.broadcast_to(h_star_t_5, 3))
-    total_ups_z = np.sum(np.broadcast_to(h_star_t_6, 3))
-    total_ups_x_2 = np.sum(np.broadcast_to(ups_platform_point_x, 3))
-    total_ups_y_2 = np.sum(np.broadcast_to(ups_platform_point_y, 3))
-    total_ups_z_2 = np.sum(np.broadcast_to(ups_platform_point_z, 3))
+    total_ups = np.sum(np.broadcast_to(ups_link3_mass, _ups))
+    total_ups_x = np.sum(np.broadcast_to(h_star_t_4, _ups))
+    total_ups_y = np.sum(np.broadcast_to(h_star_t_5, _ups))
+    total_ups_z = np.sum(np.broadcast_to(h_star_t_6, _ups))
+    total_ups_x_2 = np.sum(np.broadcast_to(ups_platform_point_x, _ups))
+    total_ups_y_2 = np.sum(np.broadcast_to(ups_platform_point_y, _ups))
+    total_ups_z_2 = np.sum(np.broadcast_to(ups_platform_point_z, _ups))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_ups
     # (M2) centripetal force and weight of the platform
@@ -527,7 +577,7 @@ def _prepare(p):
         "dynamics": (
         (Z_p_x, Z_p_y, Z_p_z, m_star,),
             (
-                (3,
+                (_ups,
         (J_group_2_xx, J_group_2_xy, J_group_2_xz, J_group_2_yy, J_group_2_yz, J_group_2_zz,
                     Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1, branch_2, g_r0_x, g_r0_y,
                     g_r0_z, h_3_x, h_3_y, h_3_z, h_group_2_x, h_group_2_y, h_group_2_z,
@@ -541,7 +591,7 @@ def _prepare(p):
         "M": (
         (m_star,),
             (
-                (3,
+                (_ups,
         (J_group_2_xx, J_group_2_xy, J_group_2_xz, J_group_2_yy, J_group_2_yz, J_group_2_zz,
                     branch_1, branch_2, h_3_x, h_3_y, h_3_z, ups_base_frame_xx, ups_base_frame_xy,
                     ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
@@ -554,7 +604,7 @@ def _prepare(p):
         "Z": (
         (Z_p_x, Z_p_y, Z_p_z,),
             (
-                (3,
+                (_ups,
         (J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
                     branch_2, g_r0_x, g_r0_y, g_r0_z, h_3_x, h_3_y, h_3_z, h_group_2_x,
                     h_group_2_y, h_group_2_z, ups_base_frame_xx, ups_base_frame_xy,
@@ -568,7 +618,7 @@ def _prepare(p):
         "H": (
         (),
             (
-                (3,
+                (_ups,
         (branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
                     ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
                     ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
@@ -579,7 +629,7 @@ def _prepare(p):
         "required": (
         (gravity_x, gravity_y, gravity_z, m_star,),
             (
-                (3,
+                (_ups,
         (J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
                     branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
                     ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
@@ -592,7 +642,7 @@ def _prepare(p):
         "inverse_kinematics": (
         (),
             (
-                (3,
+                (_ups,
         (branch_1, branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
                     ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
                     ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
@@ -604,7 +654,7 @@ def _prepare(p):
         "joint_rates": (
         (),
             (
-                (3,
+                (_ups,
         (branch_1, branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
                     ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
                     ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
@@ -616,7 +666,7 @@ def _prepare(p):
         "joint_accelerations": (
         (),
             (
-                (3,
+                (_ups,
         (branch_1, branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
                     ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
                     ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
@@ -628,7 +678,7 @@ def _prepare(p):
         "legs": (
         (),
             (
-                (3,
+                (_ups,
         (J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
                     branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
                     ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
@@ -642,7 +692,7 @@ def _prepare(p):
         "potential": (
         (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
-                (3,
+                (_ups,
         (b_r0_x, b_r0_y, b_r0_z, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z,
                     h_3_x, h_3_y, h_3_z, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
                     ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
@@ -655,7 +705,7 @@ def _prepare(p):
         "condition": (
         (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
             (
-                (3,
+                (_ups,
         (branch_1, branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
                     ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
                     ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
@@ -704,16 +754,16 @@ class _Floats:
         """Shared values, and (leg, its values) for every leg of each loop."""
         return _constants(self.p, name)[:2]
 
-    def zeros(self, size):
-        return [0.0] * size
+    def zeros(self, name):
+        return [0.0] * math.prod(_SHAPES[name])
 
     def added(self, sums, leg, terms):
         """Sums over the legs so far."""
         return [a + b for a, b in zip(sums, terms)]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(shape)), np.nan) for shape in shapes]
+        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
         for k in range(self.states):
             try:
@@ -723,7 +773,7 @@ class _Floats:
             if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
                 for a, array in zip(found, arrays):
                     a[k] = array
-        return [a.T.reshape(*shape, self.states) for a, shape in zip(found, shapes)]
+        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
 
 
 class _Arrays:
@@ -739,8 +789,8 @@ class _Arrays:
         shared, _, columns = _constants(self.p, name)
         return shared, columns
 
-    def zeros(self, size):
-        return np.zeros((size, self.states))
+    def zeros(self, name):
+        return np.zeros((math.prod(_SHAPES[name]), self.states))
 
     def every(self, good):
         """Whether it holds for all legs."""
@@ -751,7 +801,7 @@ class _Arrays:
         shape = (legs.stop, self.states)
         return [np.add.reduce(np.broadcast_to(t, shape), axis=0) for t in terms]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
         ok, arrays = function(self, *vectors)
         for a in arrays:
@@ -759,7 +809,7 @@ class _Arrays:
         if not np.all(ok):
             for a in arrays:
                 a[:, ~ok] = np.nan
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
 
 class _Judged(_Arrays):
@@ -769,12 +819,12 @@ class _Judged(_Arrays):
         super().__init__(p, states)
         self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
         (valid, reached, clear), arrays = function(self, *vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
             self.failed[code] |= ~np.broadcast_to(good, self.states)
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -1052,9 +1102,9 @@ def _run_dynamics(m, X, V):
     t_dot_y = V_1
     t_dot_z = V_2
     ok = True
-    out_M = m.zeros(9)
-    out_Z = m.zeros(3)
-    out_H = m.zeros(9)
+    out_M = m.zeros("M")
+    out_Z = m.zeros("Z")
+    out_H = m.zeros("H")
     sums = [0.0] * 9
     for leg, k in legs[0]:
         (
@@ -1242,9 +1292,9 @@ def _run_dynamics(m, X, V):
         sums = m.added(sums, leg, (
         Q_t_10, Q_t_11, Q_t_12, Q_t_14, Q_t_15, Q_t_17, U_in_base_x, U_in_base_y, U_in_base_z,
         ))
-        out_H[[0, 1, 2][leg]] = axis_x_x
-        out_H[[3, 4, 5][leg]] = axis_x_y
-        out_H[[6, 7, 8][leg]] = axis_x_z
+        out_H[_H_ups[0][leg]] = axis_x_x
+        out_H[_H_ups[1][leg]] = axis_x_y
+        out_H[_H_ups[2][leg]] = axis_x_z
     (
     total_ups_xx, total_ups_xy, total_ups_xz, total_ups_yy, total_ups_yz, total_ups_zz,
         total_ups_x, total_ups_y, total_ups_z,
@@ -1285,7 +1335,7 @@ def _run_M(m, X):
     t_y = X_1
     t_z = X_2
     ok = True
-    out_M = m.zeros(9)
+    out_M = m.zeros("M")
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
@@ -1429,7 +1479,7 @@ def _run_Z(m, X, V):
     t_dot_y = V_1
     t_dot_z = V_2
     ok = True
-    out_Z = m.zeros(3)
+    out_Z = m.zeros("Z")
     sums = [0.0] * 3
     for leg, k in legs[0]:
         (
@@ -1595,7 +1645,7 @@ def _run_H(m, X):
     t_y = X_1
     t_z = X_2
     ok = True
-    out_H = m.zeros(9)
+    out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
         branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
@@ -1629,9 +1679,9 @@ def _run_H(m, X):
         ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
             _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8))
         )
-        out_H[[0, 1, 2][leg]] = axis_x_x
-        out_H[[3, 4, 5][leg]] = axis_x_y
-        out_H[[6, 7, 8][leg]] = axis_x_z
+        out_H[_H_ups[0][leg]] = axis_x_x
+        out_H[_H_ups[1][leg]] = axis_x_y
+        out_H[_H_ups[2][leg]] = axis_x_z
     return ok, (out_H,)
 
 
@@ -1662,8 +1712,8 @@ def _run_required(m, X, V, A):
     t_ddot_y = A_1
     t_ddot_z = A_2
     ok = True
-    out_required = m.zeros(3)
-    out_H = m.zeros(9)
+    out_required = m.zeros("required")
+    out_H = m.zeros("H")
     # (E1) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
@@ -1819,9 +1869,9 @@ def _run_required(m, X, V, A):
         sums = m.added(sums, leg, (
         c_in_base_x, c_in_base_y, c_in_base_z,
         ))
-        out_H[[0, 1, 2][leg]] = axis_x_x
-        out_H[[3, 4, 5][leg]] = axis_x_y
-        out_H[[6, 7, 8][leg]] = axis_x_z
+        out_H[_H_ups[0][leg]] = axis_x_x
+        out_H[_H_ups[1][leg]] = axis_x_y
+        out_H[_H_ups[2][leg]] = axis_x_z
     total_ups_x, total_ups_y, total_ups_z = sums
     # (E3) force that actuators and external wrench must give
     R_t_x = f_p_x - total_ups_x
@@ -1846,7 +1896,7 @@ def _run_inverse_kinematics(m, X):
     t_y = X_1
     t_z = X_2
     ok = True
-    out_q = m.zeros(9)
+    out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
         branch_1, branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
@@ -1884,9 +1934,9 @@ def _run_inverse_kinematics(m, X):
         ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
             _TOLERANCE * _TOLERANCE * 0.6400000000000001))
         )
-        out_q[[0, 3, 6][leg]] = q_1
-        out_q[[1, 4, 7][leg]] = q_2
-        out_q[[2, 5, 8][leg]] = root_2
+        out_q[_q_ups[0][leg]] = q_1
+        out_q[_q_ups[1][leg]] = q_2
+        out_q[_q_ups[2][leg]] = root_2
     return ok, (out_q,)
 
 
@@ -1909,7 +1959,7 @@ def _run_joint_rates(m, X, V):
     t_dot_y = V_1
     t_dot_z = V_2
     ok = True
-    out_qd = m.zeros(9)
+    out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
         branch_1, branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
@@ -1968,9 +2018,9 @@ def _run_joint_rates(m, X, V):
             _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) > _TOLERANCE * 0.8) &
             (abs(root_2) > _TOLERANCE * 0.8))
         )
-        out_qd[[0, 3, 6][leg]] = qd_1
-        out_qd[[1, 4, 7][leg]] = qd_2
-        out_qd[[2, 5, 8][leg]] = S_dot_tip_x
+        out_qd[_qd_ups[0][leg]] = qd_1
+        out_qd[_qd_ups[1][leg]] = qd_2
+        out_qd[_qd_ups[2][leg]] = S_dot_tip_x
     return ok, (out_qd,)
 
 
@@ -2000,7 +2050,7 @@ def _run_joint_accelerations(m, X, V, A):
     t_ddot_y = A_1
     t_ddot_z = A_2
     ok = True
-    out_qdd = m.zeros(9)
+    out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
         branch_1, branch_2, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
@@ -2087,9 +2137,9 @@ def _run_joint_accelerations(m, X, V, A):
             _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) > _TOLERANCE * 0.8) &
             (abs(root_2) > _TOLERANCE * 0.8))
         )
-        out_qdd[[0, 3, 6][leg]] = qdd_1
-        out_qdd[[1, 4, 7][leg]] = qdd_2
-        out_qdd[[2, 5, 8][leg]] = rel_x
+        out_qdd[_qdd_ups[0][leg]] = qdd_1
+        out_qdd[_qdd_ups[1][leg]] = qdd_2
+        out_qdd[_qdd_ups[2][leg]] = rel_x
     return ok, (out_qdd,)
 
 
@@ -2119,8 +2169,8 @@ def _run_legs(m, X, V, A):
     t_ddot_y = A_1
     t_ddot_z = A_2
     ok = True
-    out_leg_force = m.zeros(9)
-    out_drive = m.zeros(9)
+    out_leg_force = m.zeros("leg_force")
+    out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
         J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
@@ -2274,12 +2324,12 @@ def _run_legs(m, X, V, A):
             _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) > _TOLERANCE * 0.8) &
             (abs(root_2) > _TOLERANCE * 0.8))
         )
-        out_leg_force[[0, 3, 6][leg]] = c_true_in_base_x
-        out_leg_force[[1, 4, 7][leg]] = c_true_in_base_y
-        out_leg_force[[2, 5, 8][leg]] = c_true_in_base_z
-        out_drive[[0, 3, 6][leg]] = axis_x_x
-        out_drive[[1, 4, 7][leg]] = axis_x_y
-        out_drive[[2, 5, 8][leg]] = axis_x_z
+        out_leg_force[_leg_force_ups[0][leg]] = c_true_in_base_x
+        out_leg_force[_leg_force_ups[1][leg]] = c_true_in_base_y
+        out_leg_force[_leg_force_ups[2][leg]] = c_true_in_base_z
+        out_drive[_drive_ups[0][leg]] = axis_x_x
+        out_drive[_drive_ups[1][leg]] = axis_x_y
+        out_drive[_drive_ups[2][leg]] = axis_x_z
     return ok, (out_leg_force, out_drive,)
 
 
@@ -2296,7 +2346,7 @@ def _run_potential(m, X):
     t_y = X_1
     t_z = X_2
     ok = True
-    out_potential = m.zeros(1)
+    out_potential = m.zeros("potential")
     # (V1) potential energy
     potential_t = (
     gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y + m_star*t_y) + gravity_z*(h_star_z +
@@ -2379,10 +2429,10 @@ def _run_condition(m, X):
     valid = True
     reached = True
     clear = True
-    out_H = m.zeros(9)
-    out_lengths = m.zeros(2)
-    out_pivots = m.zeros(3)
-    out_reach = m.zeros(3)
+    out_H = m.zeros("H")
+    out_lengths = m.zeros("lengths")
+    out_pivots = m.zeros("pivots")
+    out_reach = m.zeros("reach")
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
@@ -2441,10 +2491,10 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         spread_t_5,
         ))
-        out_H[[0, 1, 2][leg]] = axis_x_x
-        out_H[[3, 4, 5][leg]] = axis_x_y
-        out_H[[6, 7, 8][leg]] = axis_x_z
-        out_pivots[[0, 1, 2][leg]] = least_pivots
+        out_H[_H_ups[0][leg]] = axis_x_x
+        out_H[_H_ups[1][leg]] = axis_x_y
+        out_H[_H_ups[2][leg]] = axis_x_z
+        out_pivots[_pivots_ups[0][leg]] = least_pivots
     total_ups, = sums
     # (C2) rms distance of the platform points from their centroid
     spread = spread_t*sqrt(total_ups)
@@ -2457,44 +2507,42 @@ _DEFAULT = Parameters()
 
 
 def _steps_M(m, X):
-    M_of_M, = m.run(_run_M, ((3, 3),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
     return (M_of_M,)
 
 
 def _steps_Z(m, X, V):
-    Z_of_Z, = m.run(_run_Z, ((3,),), X, V)
+    Z_of_Z, = m.run(_run_Z, ("Z",), X, V)
     return (Z_of_Z,)
 
 
 def _steps_H(m, X):
-    H_of_H, = m.run(_run_H, ((3, 3),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 
 def _steps_inverse_kinematics(m, X):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((9,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     return (q_of_inverse_kinematics,)
 
 
 def _steps_joint_rates(m, X, V):
-    qd_of_joint_rates, = m.run(_run_joint_rates, ((9,),), X, V)
+    qd_of_joint_rates, = m.run(_run_joint_rates, ("qd",), X, V)
     return (qd_of_joint_rates,)
 
 
 def _steps_joint_accelerations(m, X, V, A):
-    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ((9,),), X, V, A)
+    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
     return (qdd_of_joint_accelerations,)
 
 
 def _steps_dynamics(m, X, V):
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((3, 3), (3,), (3, 3)), X, V)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
 
 
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
-    required_of_required, H_of_required = m.run(_run_required, ((3,), (3, 3)), X, V, A)
+    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     solve_3 = _solve(H_of_required, subtract_2)
@@ -2502,9 +2550,7 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
-    (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics,
-    ) = m.run(_run_dynamics, ((3, 3), (3,), (3, 3)), X, V)
+    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
     extend_2 = wrench
     add_3 = times_1 + extend_2
@@ -2519,25 +2565,25 @@ def _steps_complete_acceleration(m, X, V, A, wrench):
 
 
 def _steps_leg_reactions(m, X, V, A, wrench):
-    required_of_required, H_of_required = m.run(_run_required, ((3,), (3, 3)), X, V, A)
+    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     solve_3 = _solve(H_of_required, subtract_2)
-    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ((3, 3), (3, 3)), X, V, A)
+    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
     add_forces_4 = _with_forces(leg_force_of_legs, solve_3, drive_of_legs, [0, 1, 2])
     return (add_forces_4,)
 
 
 def _steps_energy(m, X, V):
-    M_of_M, = m.run(_run_M, ((3, 3),), X)
-    potential_of_potential, = m.run(_run_potential, ((1,),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
+    potential_of_potential, = m.run(_run_potential, ("potential",), X)
     half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
     entry_2 = potential_of_potential[0]
     return (half_form_1, entry_2,)
 
 
 def _steps_null_space(m, X):
-    H_of_H, = m.run(_run_H, ((3, 3),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     null_basis_1 = _null_basis(H_of_H, 3)
     return (null_basis_1,)
 
@@ -2545,20 +2591,20 @@ def _steps_null_space(m, X):
 def _steps_condition(m, X, length):
     (
     H_of_condition, lengths_of_condition, pivots_of_condition, reach_of_condition,
-    ) = m.run(_run_condition, ((3, 3), (2,), (3,), (3,)), X)
+    ) = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
     singular_values_1 = _singular_values(H_of_condition)
     return (singular_values_1, pivots_of_condition,)
 
 
 def _steps_mismatch(m, X, q_actuated):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((9,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     take_1 = q_of_inverse_kinematics[[2, 5, 8]]
     subtract_2 = q_actuated - take_1
     return (subtract_2,)
 
 
 def _steps_slope(m, X):
-    H_of_H, = m.run(_run_H, ((3, 3),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 

@@ -72,6 +72,87 @@ NJ = 9
 # Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
 
+_SHAPES = {  # of the arrays that functions give
+    "M": (6, 6),
+    "Z": (6,),
+    "H": (6, 3),
+    "Hk": (6, 3),
+    "constraint_bias": (3,),
+    "required": (6,),
+    "q": (9,),
+    "qd": (9,),
+    "qdd": (9,),
+    "constraints": (3,),
+    "leg_force": (3, 6),
+    "drive": (3, 6),
+    "constraint_direction": (3, 6),
+    "potential": (1,),
+    "lengths": (2,),
+    "pivots": (3,),
+    "reach": (3,),
+}
+# Where the entries of a leg type's legs stand in these arrays, row by row.
+_H_upu = (
+    [0, 1, 2],
+    [3, 4, 5],
+    [6, 7, 8],
+    [9, 10, 11],
+    [12, 13, 14],
+    [15, 16, 17],
+)
+_Hk_upu = (
+    [0, 1, 2],
+    [3, 4, 5],
+    [6, 7, 8],
+    [9, 10, 11],
+    [12, 13, 14],
+    [15, 16, 17],
+)
+_constraint_bias_upu = (
+    [0, 1, 2],
+)
+_q_upu = (
+    [0, 3, 6],
+    [1, 4, 7],
+    [2, 5, 8],
+)
+_qd_upu = (
+    [0, 3, 6],
+    [1, 4, 7],
+    [2, 5, 8],
+)
+_qdd_upu = (
+    [0, 3, 6],
+    [1, 4, 7],
+    [2, 5, 8],
+)
+_constraints_upu = (
+    [0, 1, 2],
+)
+_leg_force_upu = (
+    [0, 6, 12],
+    [1, 7, 13],
+    [2, 8, 14],
+    [3, 9, 15],
+    [4, 10, 16],
+    [5, 11, 17],
+)
+_drive_upu = (
+    [0, 6, 12],
+    [1, 7, 13],
+    [2, 8, 14],
+)
+_constraint_direction_upu = (
+    [0, 6, 12],
+    [1, 7, 13],
+    [2, 8, 14],
+    [3, 9, 15],
+    [4, 10, 16],
+    [5, 11, 17],
+)
+_pivots_upu = (
+    [0, 1, 2],
+)
 _DRIVEN_JOINTS = (2, 5, 8)
 
 _DEFAULTS = {
@@ -384,6 +465,7 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _upu = 3
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     gravity_z = p.gravity[2]
@@ -545,9 +627,9 @@ def _prepare(p):
     upu_base_frame_xz*upu_base_point_x + upu_base_frame_yz*upu_base_point_y +
         upu_base_frame_zz*upu_base_point_z
     )
-    total_upu_x = np.sum(np.broadcast_to(upu_platform_point_x, 3))
-    total_upu_y = np.sum(np.broadcast_to(upu_platform_point_y, 3))
-    total_upu_z = np.sum(np.broadcast_to(upu_platform_point_z, 3))
+    total_upu_x = np.sum(np.broadcast_to(upu_platform_point_x, _upu))
+    total_upu_y = np.sum(np.broadcast_to(upu_platform_point_y, _upu))
+    total_upu_z = np.sum(np.broadcast_to(upu_platform_point_z, _upu))
     # (C1) centroid of the platform points
     b_c_x = 0.3333333333333333*total_upu_x
     b_c_y = 0.3333333333333333*total_upu_y
@@ -558,7 +640,7 @@ def _prepare(p):
                 Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y,
                 h_star_z, platform_mass,),
             (
-                (3,
+                (_upu,
         (J_group_2_xx, J_group_2_xy, J_group_2_xz, J_group_2_yy, J_group_2_yz, J_group_2_zz,
                     Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1, branch_2, g_r0_x, g_r0_y,
                     g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, upu_base_frame_xx,
@@ -575,7 +657,7 @@ def _prepare(p):
         (J_star_t_6, J_star_t_8, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
                 h_star_z, platform_mass,),
             (
-                (3,
+                (_upu,
         (J_group_2_xx, J_group_2_xy, J_group_2_xz, J_group_2_yy, J_group_2_yz, J_group_2_zz,
                     branch_1, branch_2, h_3_x, h_3_y, h_3_z, upu_base_frame_xx, upu_base_frame_xy,
                     upu_base_frame_xz, upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz,
@@ -591,7 +673,7 @@ def _prepare(p):
         (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2,
                 Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
             (
-                (3,
+                (_upu,
         (J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
                     branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
                     upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
@@ -606,7 +688,7 @@ def _prepare(p):
         "H": (
         (),
             (
-                (3,
+                (_upu,
         (branch_1, branch_2, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
                     upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
                     upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
@@ -618,7 +700,7 @@ def _prepare(p):
         "Hk": (
         (),
             (
-                (3,
+                (_upu,
         (branch_1, branch_2, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
                     upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
                     upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
@@ -631,7 +713,7 @@ def _prepare(p):
         "constraint_bias": (
         (),
             (
-                (3,
+                (_upu,
         (branch_1, branch_2, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
                     upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
                     upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
@@ -645,7 +727,7 @@ def _prepare(p):
         (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
                 gravity_z, h_star_x, h_star_y, h_star_z, platform_mass,),
             (
-                (3,
+                (_upu,
         (J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
                     branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
                     upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
@@ -660,7 +742,7 @@ def _prepare(p):
         "inverse_kinematics": (
         (),
             (
-                (3,
+                (_upu,
         (branch_1, branch_2, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
                     upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
                     upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
@@ -672,7 +754,7 @@ def _prepare(p):
         "joint_rates": (
         (),
             (
-                (3,
+                (_upu,
         (branch_1, branch_2, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
                     upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
                     upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
@@ -685,7 +767,7 @@ def _prepare(p):
         "joint_accelerations": (
         (),
             (
-                (3,
+                (_upu,
         (branch_1, branch_2, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
                     upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
                     upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
@@ -698,7 +780,7 @@ def _prepare(p):
         "constraints": (
         (),
             (
-                (3,
+                (_upu,
         (branch_1, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_yx, upu_base_frame_yy,
                     upu_base_frame_zx, upu_base_frame_zy, upu_base_point_x, upu_base_point_y,
                     upu_base_point_z, upu_platform_joint_axis_platform_x,
@@ -710,7 +792,7 @@ def _prepare(p):
         "legs": (
         (),
             (
-                (3,
+                (_upu,
         (J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
                     branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
                     upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
@@ -725,7 +807,7 @@ def _prepare(p):
         "potential": (
         (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, platform_mass,),
             (
-                (3,
+                (_upu,
         (b_r0_x, b_r0_y, b_r0_z, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z,
                     h_3_x, h_3_y, h_3_z, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
                     upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
@@ -738,7 +820,7 @@ def _prepare(p):
         "condition": (
         (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
             (
-                (3,
+                (_upu,
         (branch_1, branch_2, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
                     upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
                     upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
@@ -788,16 +870,16 @@ class _Floats:
         """Shared values, and (leg, its values) for every leg of each loop."""
         return _constants(self.p, name)[:2]
 
-    def zeros(self, size):
-        return [0.0] * size
+    def zeros(self, name):
+        return [0.0] * math.prod(_SHAPES[name])
 
     def added(self, sums, leg, terms):
         """Sums over the legs so far."""
         return [a + b for a, b in zip(sums, terms)]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        found = [np.full((self.states, math.prod(shape)), np.nan) for shape in shapes]
+        found = [np.full((self.states, math.prod(_SHAPES[n])), np.nan) for n in names]
         rows = [v.T.tolist() for v in vectors]
         for k in range(self.states):
             try:
@@ -807,7 +889,7 @@ class _Floats:
             if ok and all(map(math.isfinite, (x for array in arrays for x in array))):
                 for a, array in zip(found, arrays):
                     a[k] = array
-        return [a.T.reshape(*shape, self.states) for a, shape in zip(found, shapes)]
+        return [a.T.reshape(*_SHAPES[n], self.states) for a, n in zip(found, names)]
 
 
 class _Arrays:
@@ -823,8 +905,8 @@ class _Arrays:
         shared, _, columns = _constants(self.p, name)
         return shared, columns
 
-    def zeros(self, size):
-        return np.zeros((size, self.states))
+    def zeros(self, name):
+        return np.zeros((math.prod(_SHAPES[name]), self.states))
 
     def every(self, good):
         """Whether it holds for all legs."""
@@ -835,7 +917,7 @@ class _Arrays:
         shape = (legs.stop, self.states)
         return [np.add.reduce(np.broadcast_to(t, shape), axis=0) for t in terms]
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
         ok, arrays = function(self, *vectors)
         for a in arrays:
@@ -843,7 +925,7 @@ class _Arrays:
         if not np.all(ok):
             for a in arrays:
                 a[:, ~ok] = np.nan
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
 
 class _Judged(_Arrays):
@@ -853,12 +935,12 @@ class _Judged(_Arrays):
         super().__init__(p, states)
         self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
 
-    def run(self, function, shapes, *vectors):
+    def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
         (valid, reached, clear), arrays = function(self, *vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
             self.failed[code] |= ~np.broadcast_to(good, self.states)
-        return [a.reshape(*shape, self.states) for a, shape in zip(arrays, shapes)]
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -1262,11 +1344,11 @@ def _run_dynamics(m, X, V):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_M = m.zeros(36)
-    out_Z = m.zeros(6)
-    out_H = m.zeros(18)
-    out_Hk = m.zeros(18)
-    out_constraint_bias = m.zeros(3)
+    out_M = m.zeros("M")
+    out_Z = m.zeros("Z")
+    out_H = m.zeros("H")
+    out_Hk = m.zeros("Hk")
+    out_constraint_bias = m.zeros("constraint_bias")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -1840,19 +1922,19 @@ def _run_dynamics(m, X, V):
             M_aa_t_2, M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6, U_in_base_x, U_in_base_y,
             U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,
         ))
-        out_H[[0, 1, 2][leg]] = axis_x_upu_axes2_x
-        out_H[[3, 4, 5][leg]] = axis_x_upu_axes2_y
-        out_H[[6, 7, 8][leg]] = axis_x_upu_axes2_z
-        out_H[[9, 10, 11][leg]] = H_a_3_t
-        out_H[[12, 13, 14][leg]] = H_a_3_t_2
-        out_H[[15, 16, 17][leg]] = H_a_3_t_3
-        out_Hk[[0, 1, 2][leg]] = -n_c_t
-        out_Hk[[3, 4, 5][leg]] = -n_c_t_2
-        out_Hk[[6, 7, 8][leg]] = -n_c_t_3
-        out_Hk[[9, 10, 11][leg]] = Hk_a_1_x
-        out_Hk[[12, 13, 14][leg]] = Hk_a_1_y
-        out_Hk[[15, 16, 17][leg]] = Hk_a_1_z
-        out_constraint_bias[[0, 1, 2][leg]] = gamma_c1
+        out_H[_H_upu[0][leg]] = axis_x_upu_axes2_x
+        out_H[_H_upu[1][leg]] = axis_x_upu_axes2_y
+        out_H[_H_upu[2][leg]] = axis_x_upu_axes2_z
+        out_H[_H_upu[3][leg]] = H_a_3_t
+        out_H[_H_upu[4][leg]] = H_a_3_t_2
+        out_H[_H_upu[5][leg]] = H_a_3_t_3
+        out_Hk[_Hk_upu[0][leg]] = -n_c_t
+        out_Hk[_Hk_upu[1][leg]] = -n_c_t_2
+        out_Hk[_Hk_upu[2][leg]] = -n_c_t_3
+        out_Hk[_Hk_upu[3][leg]] = Hk_a_1_x
+        out_Hk[_Hk_upu[4][leg]] = Hk_a_1_y
+        out_Hk[_Hk_upu[5][leg]] = Hk_a_1_z
+        out_constraint_bias[_constraint_bias_upu[0][leg]] = gamma_c1
     (
     total_upu_xx, total_upu_xy, total_upu_xz, total_upu_yy, total_upu_yz, total_upu_zz,
         total_upu_xx_2, total_upu_xy_2, total_upu_xz_2, total_upu_yx, total_upu_yy_2,
@@ -1975,7 +2057,7 @@ def _run_M(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_M = m.zeros(36)
+    out_M = m.zeros("M")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -2471,7 +2553,7 @@ def _run_Z(m, X, V):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_Z = m.zeros(6)
+    out_Z = m.zeros("Z")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -2839,7 +2921,7 @@ def _run_H(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_H = m.zeros(18)
+    out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
         branch_1, branch_2, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
@@ -2919,12 +3001,12 @@ def _run_H(m, X):
         ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
             _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8))
         )
-        out_H[[0, 1, 2][leg]] = axis_x_upu_axes2_x
-        out_H[[3, 4, 5][leg]] = axis_x_upu_axes2_y
-        out_H[[6, 7, 8][leg]] = axis_x_upu_axes2_z
-        out_H[[9, 10, 11][leg]] = H_a_3_t
-        out_H[[12, 13, 14][leg]] = H_a_3_t_2
-        out_H[[15, 16, 17][leg]] = H_a_3_t_3
+        out_H[_H_upu[0][leg]] = axis_x_upu_axes2_x
+        out_H[_H_upu[1][leg]] = axis_x_upu_axes2_y
+        out_H[_H_upu[2][leg]] = axis_x_upu_axes2_z
+        out_H[_H_upu[3][leg]] = H_a_3_t
+        out_H[_H_upu[4][leg]] = H_a_3_t_2
+        out_H[_H_upu[5][leg]] = H_a_3_t_3
     return ok, (out_H,)
 
 
@@ -2968,7 +3050,7 @@ def _run_Hk(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_Hk = m.zeros(18)
+    out_Hk = m.zeros("Hk")
     for leg, k in legs[0]:
         (
         branch_1, branch_2, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
@@ -3085,12 +3167,12 @@ def _run_Hk(m, X):
             _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-volume_c_t) > _TOLERANCE *
             0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8))
         )
-        out_Hk[[0, 1, 2][leg]] = -n_c_t
-        out_Hk[[3, 4, 5][leg]] = -n_c_t_2
-        out_Hk[[6, 7, 8][leg]] = -n_c_t_3
-        out_Hk[[9, 10, 11][leg]] = Hk_a_1_x
-        out_Hk[[12, 13, 14][leg]] = Hk_a_1_y
-        out_Hk[[15, 16, 17][leg]] = Hk_a_1_z
+        out_Hk[_Hk_upu[0][leg]] = -n_c_t
+        out_Hk[_Hk_upu[1][leg]] = -n_c_t_2
+        out_Hk[_Hk_upu[2][leg]] = -n_c_t_3
+        out_Hk[_Hk_upu[3][leg]] = Hk_a_1_x
+        out_Hk[_Hk_upu[4][leg]] = Hk_a_1_y
+        out_Hk[_Hk_upu[5][leg]] = Hk_a_1_z
     return ok, (out_Hk,)
 
 
@@ -3147,7 +3229,7 @@ def _run_constraint_bias(m, X, V):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_constraint_bias = m.zeros(3)
+    out_constraint_bias = m.zeros("constraint_bias")
     for leg, k in legs[0]:
         (
         branch_1, branch_2, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
@@ -3323,7 +3405,7 @@ def _run_constraint_bias(m, X, V):
             0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8) & (abs(w_1_t_3) > _TOLERANCE *
             0.8))
         )
-        out_constraint_bias[[0, 1, 2][leg]] = gamma_c1
+        out_constraint_bias[_constraint_bias_upu[0][leg]] = gamma_c1
     return ok, (out_constraint_bias,)
 
 
@@ -3397,9 +3479,9 @@ def _run_required(m, X, V, A):
     alpha_z = A_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_required = m.zeros(6)
-    out_H = m.zeros(18)
-    out_Hk = m.zeros(18)
+    out_required = m.zeros("required")
+    out_H = m.zeros("H")
+    out_Hk = m.zeros("Hk")
     # (L2) first moment about the platform origin
     h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
@@ -3769,18 +3851,18 @@ def _run_required(m, X, V, A):
         sums = m.added(sums, leg, (
         c_in_base_x, c_in_base_y, c_in_base_z, R_a_t, R_a_t_2, R_a_t_3,
         ))
-        out_H[[0, 1, 2][leg]] = axis_x_upu_axes2_x
-        out_H[[3, 4, 5][leg]] = axis_x_upu_axes2_y
-        out_H[[6, 7, 8][leg]] = axis_x_upu_axes2_z
-        out_H[[9, 10, 11][leg]] = H_a_3_t
-        out_H[[12, 13, 14][leg]] = H_a_3_t_2
-        out_H[[15, 16, 17][leg]] = H_a_3_t_3
-        out_Hk[[0, 1, 2][leg]] = -n_c_t
-        out_Hk[[3, 4, 5][leg]] = -n_c_t_2
-        out_Hk[[6, 7, 8][leg]] = -n_c_t_3
-        out_Hk[[9, 10, 11][leg]] = Hk_a_1_x
-        out_Hk[[12, 13, 14][leg]] = Hk_a_1_y
-        out_Hk[[15, 16, 17][leg]] = Hk_a_1_z
+        out_H[_H_upu[0][leg]] = axis_x_upu_axes2_x
+        out_H[_H_upu[1][leg]] = axis_x_upu_axes2_y
+        out_H[_H_upu[2][leg]] = axis_x_upu_axes2_z
+        out_H[_H_upu[3][leg]] = H_a_3_t
+        out_H[_H_upu[4][leg]] = H_a_3_t_2
+        out_H[_H_upu[5][leg]] = H_a_3_t_3
+        out_Hk[_Hk_upu[0][leg]] = -n_c_t
+        out_Hk[_Hk_upu[1][leg]] = -n_c_t_2
+        out_Hk[_Hk_upu[2][leg]] = -n_c_t_3
+        out_Hk[_Hk_upu[3][leg]] = Hk_a_1_x
+        out_Hk[_Hk_upu[4][leg]] = Hk_a_1_y
+        out_Hk[_Hk_upu[5][leg]] = Hk_a_1_z
     total_upu_x, total_upu_y, total_upu_z, total_upu_x_2, total_upu_y_2, total_upu_z_2 = sums
     # (E4) force that actuators and external wrench must give
     R_t_x = f_p_x - total_upu_x
@@ -3840,7 +3922,7 @@ def _run_inverse_kinematics(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_q = m.zeros(9)
+    out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
         branch_1, branch_2, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
@@ -3887,9 +3969,9 @@ def _run_inverse_kinematics(m, X):
         ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
             _TOLERANCE * _TOLERANCE * 0.6400000000000001))
         )
-        out_q[[0, 3, 6][leg]] = q_1
-        out_q[[1, 4, 7][leg]] = q_2
-        out_q[[2, 5, 8][leg]] = root_2
+        out_q[_q_upu[0][leg]] = q_1
+        out_q[_q_upu[1][leg]] = q_2
+        out_q[_q_upu[2][leg]] = root_2
     return ok, (out_q,)
 
 
@@ -3946,7 +4028,7 @@ def _run_joint_rates(m, X, V):
     omega_z = V_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_qd = m.zeros(9)
+    out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
         branch_1, branch_2, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
@@ -4079,9 +4161,9 @@ def _run_joint_rates(m, X, V):
             0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8) & (abs(w_1_t_3) > _TOLERANCE *
             0.8))
         )
-        out_qd[[0, 3, 6][leg]] = qd_1_t_3
-        out_qd[[1, 4, 7][leg]] = qd_1_t
-        out_qd[[2, 5, 8][leg]] = S_dot_tip_x
+        out_qd[_qd_upu[0][leg]] = qd_1_t_3
+        out_qd[_qd_upu[1][leg]] = qd_1_t
+        out_qd[_qd_upu[2][leg]] = S_dot_tip_x
     return ok, (out_qd,)
 
 
@@ -4151,7 +4233,7 @@ def _run_joint_accelerations(m, X, V, A):
     alpha_z = A_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_qdd = m.zeros(9)
+    out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
         branch_1, branch_2, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
@@ -4348,9 +4430,9 @@ def _run_joint_accelerations(m, X, V, A):
             0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8) & (abs(w_1_t_3) > _TOLERANCE *
             0.8))
         )
-        out_qdd[[0, 3, 6][leg]] = qdd_1_t_2
-        out_qdd[[1, 4, 7][leg]] = qdd_1_t
-        out_qdd[[2, 5, 8][leg]] = rel_x
+        out_qdd[_qdd_upu[0][leg]] = qdd_1_t_2
+        out_qdd[_qdd_upu[1][leg]] = qdd_1_t
+        out_qdd[_qdd_upu[2][leg]] = rel_x
     return ok, (out_qdd,)
 
 
@@ -4394,7 +4476,7 @@ def _run_constraints(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_constraints = m.zeros(3)
+    out_constraints = m.zeros("constraints")
     for leg, k in legs[0]:
         (
         branch_1, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_yx, upu_base_frame_yy,
@@ -4444,7 +4526,7 @@ def _run_constraints(m, X):
         # (upu-V5) direction 1 of the moment that the platform joint transmits
         end_p1_r1_x = end_p1_r0_y*inv_root_1*px_1 - end_p1_r0_x*inv_root_1*py_1
         ok = ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
-        out_constraints[[0, 1, 2][leg]] = -end_p1_r1_x
+        out_constraints[_constraints_upu[0][leg]] = -end_p1_r1_x
     return ok, (out_constraints,)
 
 
@@ -4514,9 +4596,9 @@ def _run_legs(m, X, V, A):
     alpha_z = A_5
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_leg_force = m.zeros(18)
-    out_drive = m.zeros(18)
-    out_constraint_direction = m.zeros(18)
+    out_leg_force = m.zeros("leg_force")
+    out_drive = m.zeros("drive")
+    out_constraint_direction = m.zeros("constraint_direction")
     for leg, k in legs[0]:
         (
         J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
@@ -4802,21 +4884,21 @@ def _run_legs(m, X, V, A):
             0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8) & (abs(w_1_t_3) > _TOLERANCE *
             0.8))
         )
-        out_leg_force[[0, 6, 12][leg]] = c_in_base_x
-        out_leg_force[[1, 7, 13][leg]] = c_in_base_y
-        out_leg_force[[2, 8, 14][leg]] = c_in_base_z
-        out_leg_force[[3, 9, 15][leg]] = c_m_in_base_x
-        out_leg_force[[4, 10, 16][leg]] = c_m_in_base_y
-        out_leg_force[[5, 11, 17][leg]] = c_m_in_base_z
-        out_drive[[0, 6, 12][leg]] = axis_x_upu_axes2_x
-        out_drive[[1, 7, 13][leg]] = axis_x_upu_axes2_y
-        out_drive[[2, 8, 14][leg]] = axis_x_upu_axes2_z
-        out_constraint_direction[[0, 6, 12][leg]] = -n_c_t
-        out_constraint_direction[[1, 7, 13][leg]] = -n_c_t_2
-        out_constraint_direction[[2, 8, 14][leg]] = -n_c_t_3
-        out_constraint_direction[[3, 9, 15][leg]] = n_m1_in_base_x
-        out_constraint_direction[[4, 10, 16][leg]] = n_m1_in_base_y
-        out_constraint_direction[[5, 11, 17][leg]] = n_m1_in_base_z
+        out_leg_force[_leg_force_upu[0][leg]] = c_in_base_x
+        out_leg_force[_leg_force_upu[1][leg]] = c_in_base_y
+        out_leg_force[_leg_force_upu[2][leg]] = c_in_base_z
+        out_leg_force[_leg_force_upu[3][leg]] = c_m_in_base_x
+        out_leg_force[_leg_force_upu[4][leg]] = c_m_in_base_y
+        out_leg_force[_leg_force_upu[5][leg]] = c_m_in_base_z
+        out_drive[_drive_upu[0][leg]] = axis_x_upu_axes2_x
+        out_drive[_drive_upu[1][leg]] = axis_x_upu_axes2_y
+        out_drive[_drive_upu[2][leg]] = axis_x_upu_axes2_z
+        out_constraint_direction[_constraint_direction_upu[0][leg]] = -n_c_t
+        out_constraint_direction[_constraint_direction_upu[1][leg]] = -n_c_t_2
+        out_constraint_direction[_constraint_direction_upu[2][leg]] = -n_c_t_3
+        out_constraint_direction[_constraint_direction_upu[3][leg]] = n_m1_in_base_x
+        out_constraint_direction[_constraint_direction_upu[4][leg]] = n_m1_in_base_y
+        out_constraint_direction[_constraint_direction_upu[5][leg]] = n_m1_in_base_z
     return ok, (out_leg_force, out_drive, out_constraint_direction,)
 
 
@@ -4861,7 +4943,7 @@ def _run_potential(m, X):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_potential = m.zeros(1)
+    out_potential = m.zeros("potential")
     # (V1) potential energy
     potential_t = (
     gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + platform_mass*t_x) +
@@ -4986,11 +5068,11 @@ def _run_condition(m, X):
     reached = True
     clear = True
     valid = valid & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_H = m.zeros(18)
-    out_Hk = m.zeros(18)
-    out_lengths = m.zeros(2)
-    out_pivots = m.zeros(3)
-    out_reach = m.zeros(3)
+    out_H = m.zeros("H")
+    out_Hk = m.zeros("Hk")
+    out_lengths = m.zeros("lengths")
+    out_pivots = m.zeros("pivots")
+    out_reach = m.zeros("reach")
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
@@ -5148,19 +5230,19 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         spread_t_5,
         ))
-        out_H[[0, 1, 2][leg]] = axis_x_upu_axes2_x
-        out_H[[3, 4, 5][leg]] = axis_x_upu_axes2_y
-        out_H[[6, 7, 8][leg]] = axis_x_upu_axes2_z
-        out_H[[9, 10, 11][leg]] = H_a_3_t
-        out_H[[12, 13, 14][leg]] = H_a_3_t_2
-        out_H[[15, 16, 17][leg]] = H_a_3_t_3
-        out_Hk[[0, 1, 2][leg]] = -n_c_t
-        out_Hk[[3, 4, 5][leg]] = -n_c_t_2
-        out_Hk[[6, 7, 8][leg]] = -n_c_t_3
-        out_Hk[[9, 10, 11][leg]] = Hk_a_1_x
-        out_Hk[[12, 13, 14][leg]] = Hk_a_1_y
-        out_Hk[[15, 16, 17][leg]] = Hk_a_1_z
-        out_pivots[[0, 1, 2][leg]] = least_pivots
+        out_H[_H_upu[0][leg]] = axis_x_upu_axes2_x
+        out_H[_H_upu[1][leg]] = axis_x_upu_axes2_y
+        out_H[_H_upu[2][leg]] = axis_x_upu_axes2_z
+        out_H[_H_upu[3][leg]] = H_a_3_t
+        out_H[_H_upu[4][leg]] = H_a_3_t_2
+        out_H[_H_upu[5][leg]] = H_a_3_t_3
+        out_Hk[_Hk_upu[0][leg]] = -n_c_t
+        out_Hk[_Hk_upu[1][leg]] = -n_c_t_2
+        out_Hk[_Hk_upu[2][leg]] = -n_c_t_3
+        out_Hk[_Hk_upu[3][leg]] = Hk_a_1_x
+        out_Hk[_Hk_upu[4][leg]] = Hk_a_1_y
+        out_Hk[_Hk_upu[5][leg]] = Hk_a_1_z
+        out_pivots[_pivots_upu[0][leg]] = least_pivots
     total_upu, = sums
     # (C2) rms distance of the platform points from their centroid
     spread = spread_t*sqrt(total_upu)
@@ -5173,61 +5255,61 @@ _DEFAULT = Parameters()
 
 
 def _steps_M(m, X):
-    M_of_M, = m.run(_run_M, ((6, 6),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
     return (M_of_M,)
 
 
 def _steps_Z(m, X, V):
-    Z_of_Z, = m.run(_run_Z, ((6,),), X, V)
+    Z_of_Z, = m.run(_run_Z, ("Z",), X, V)
     return (Z_of_Z,)
 
 
 def _steps_H(m, X):
-    H_of_H, = m.run(_run_H, ((6, 3),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     return (H_of_H,)
 
 
 def _steps_Hk(m, X):
-    Hk_of_Hk, = m.run(_run_Hk, ((6, 3),), X)
+    Hk_of_Hk, = m.run(_run_Hk, ("Hk",), X)
     return (Hk_of_Hk,)
 
 
 def _steps_constraints(m, X):
-    constraints_of_constraints, = m.run(_run_constraints, ((3,),), X)
+    constraints_of_constraints, = m.run(_run_constraints, ("constraints",), X)
     return (constraints_of_constraints,)
 
 
 def _steps_constraint_bias(m, X, V):
-    constraint_bias_of_constraint_bias, = m.run(_run_constraint_bias, ((3,),), X, V)
+    constraint_bias_of_constraint_bias, = m.run(_run_constraint_bias, ("constraint_bias",), X, V)
     return (constraint_bias_of_constraint_bias,)
 
 
 def _steps_inverse_kinematics(m, X):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((9,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     return (q_of_inverse_kinematics,)
 
 
 def _steps_joint_rates(m, X, V):
-    qd_of_joint_rates, = m.run(_run_joint_rates, ((9,),), X, V)
+    qd_of_joint_rates, = m.run(_run_joint_rates, ("qd",), X, V)
     return (qd_of_joint_rates,)
 
 
 def _steps_joint_accelerations(m, X, V, A):
-    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ((9,),), X, V, A)
+    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
     return (qdd_of_joint_accelerations,)
 
 
 def _steps_dynamics(m, X, V):
     (
     M_of_dynamics, Z_of_dynamics, H_of_dynamics, Hk_of_dynamics, constraint_bias_of_dynamics,
-    ) = m.run(_run_dynamics, ((6, 6), (6,), (6, 3), (6, 3), (3,)), X, V)
+    ) = m.run(_run_dynamics, ("M", "Z", "H", "Hk", "constraint_bias"), X, V)
     return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
 
 
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
     (
     required_of_required, H_of_required, Hk_of_required,
-    ) = m.run(_run_required, ((6,), (6, 3), (6, 3)), X, V, A)
+    ) = m.run(_run_required, ("required", "H", "Hk"), X, V, A)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     beside_3 = np.concatenate((H_of_required, Hk_of_required), axis=1)
@@ -5239,7 +5321,7 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
 def _steps_forward_dynamics(m, X, V, tau, wrench):
     (
     M_of_dynamics, Z_of_dynamics, H_of_dynamics, Hk_of_dynamics, constraint_bias_of_dynamics,
-    ) = m.run(_run_dynamics, ((6, 6), (6,), (6, 3), (6, 3), (3,)), X, V)
+    ) = m.run(_run_dynamics, ("M", "Z", "H", "Hk", "constraint_bias"), X, V)
     times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
     extend_2 = wrench
     add_3 = times_1 + extend_2
@@ -5260,7 +5342,7 @@ def _steps_complete_acceleration(m, X, V, A, wrench):
 def _steps_leg_reactions(m, X, V, A, wrench):
     (
     required_of_required, H_of_required, Hk_of_required,
-    ) = m.run(_run_required, ((6,), (6, 3), (6, 3)), X, V, A)
+    ) = m.run(_run_required, ("required", "H", "Hk"), X, V, A)
     extend_1 = wrench
     subtract_2 = required_of_required - extend_1
     beside_3 = np.concatenate((H_of_required, Hk_of_required), axis=1)
@@ -5268,22 +5350,22 @@ def _steps_leg_reactions(m, X, V, A, wrench):
     split_5, split_6 = solve_4[:3], solve_4[3:]
     (
     leg_force_of_legs, drive_of_legs, constraint_direction_of_legs,
-    ) = m.run(_run_legs, ((3, 6), (3, 6), (3, 6)), X, V, A)
+    ) = m.run(_run_legs, ("leg_force", "drive", "constraint_direction"), X, V, A)
     add_forces_7 = _with_forces(leg_force_of_legs, split_5, drive_of_legs, [0, 1, 2])
     add_forces_8 = _with_forces(add_forces_7, split_6, constraint_direction_of_legs, [0, 1, 2])
     return (add_forces_8,)
 
 
 def _steps_energy(m, X, V):
-    M_of_M, = m.run(_run_M, ((6, 6),), X)
-    potential_of_potential, = m.run(_run_potential, ((1,),), X)
+    M_of_M, = m.run(_run_M, ("M",), X)
+    potential_of_potential, = m.run(_run_potential, ("potential",), X)
     half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
     entry_2 = potential_of_potential[0]
     return (half_form_1, entry_2,)
 
 
 def _steps_null_space(m, X):
-    H_of_H, = m.run(_run_H, ((6, 3),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
     null_basis_1 = _null_basis(H_of_H, 3)
     return (null_basis_1,)
 
@@ -5292,7 +5374,7 @@ def _steps_condition(m, X, length):
     (
     H_of_condition, Hk_of_condition, lengths_of_condition, pivots_of_condition,
         reach_of_condition,
-    ) = m.run(_run_condition, ((6, 3), (6, 3), (2,), (3,), (3,)), X)
+    ) = m.run(_run_condition, ("H", "Hk", "lengths", "pivots", "reach"), X)
     choose_length_1 = _chosen_length(lengths_of_condition, length)
     divide_rows_2 = _rows_divided(H_of_condition, choose_length_1, [3, 4, 5])
     singular_values_3 = _singular_values(divide_rows_2)
@@ -5303,7 +5385,7 @@ def _steps_condition_constrained(m, X, length):
     (
     H_of_condition, Hk_of_condition, lengths_of_condition, pivots_of_condition,
         reach_of_condition,
-    ) = m.run(_run_condition, ((6, 3), (6, 3), (2,), (3,), (3,)), X)
+    ) = m.run(_run_condition, ("H", "Hk", "lengths", "pivots", "reach"), X)
     beside_1 = np.concatenate((H_of_condition, Hk_of_condition), axis=1)
     choose_length_2 = _chosen_length(lengths_of_condition, length)
     divide_rows_3 = _rows_divided(beside_1, choose_length_2, [3, 4, 5])
@@ -5312,18 +5394,18 @@ def _steps_condition_constrained(m, X, length):
 
 
 def _steps_mismatch(m, X, q_actuated):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ((9,),), X)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
     take_1 = q_of_inverse_kinematics[[2, 5, 8]]
     subtract_2 = q_actuated - take_1
-    constraints_of_constraints, = m.run(_run_constraints, ((3,),), X)
+    constraints_of_constraints, = m.run(_run_constraints, ("constraints",), X)
     negative_3 = -constraints_of_constraints
     join_4 = np.concatenate((subtract_2, negative_3))
     return (join_4,)
 
 
 def _steps_slope(m, X):
-    H_of_H, = m.run(_run_H, ((6, 3),), X)
-    Hk_of_Hk, = m.run(_run_Hk, ((6, 3),), X)
+    H_of_H, = m.run(_run_H, ("H",), X)
+    Hk_of_Hk, = m.run(_run_Hk, ("Hk",), X)
     beside_1 = np.concatenate((H_of_H, Hk_of_Hk), axis=1)
     return (beside_1,)
 
@@ -5334,13 +5416,13 @@ def _steps_forward_kinematics(m, q_actuated, X0):
 
 
 def _steps_constraint_gap(m, X):
-    constraints_of_constraints, = m.run(_run_constraints, ((3,),), X)
+    constraints_of_constraints, = m.run(_run_constraints, ("constraints",), X)
     negative_1 = -constraints_of_constraints
     return (negative_1,)
 
 
 def _steps_constraint_slope(m, X):
-    Hk_of_Hk, = m.run(_run_Hk, ((6, 3),), X)
+    Hk_of_Hk, = m.run(_run_Hk, ("Hk",), X)
     return (Hk_of_Hk,)
 
 
