@@ -76,11 +76,11 @@ def test_statuses_that_the_numpy_module_has_no_word_for() -> None:
     """Weights that are not positive, matrices that are no rotations: INVALID."""
     manipulator = models.catalogue("planar_4rpr")
     reference = interpreter(manipulator)
-    X = np.tile(manipulator.home.X, (3, 1))
-    weights = np.ones((3, reference.functions["inverse_dynamics"].inputs[-1].value.size))
+    X = np.tile(manipulator.home.X, (4, 1))
+    weights = np.ones((4, reference.functions["inverse_dynamics"].inputs[-1].value.size))
     weights[0, 0], weights[1, 0] = -1.0, np.nan
-    R = np.stack([np.diag([1.0, -1.0]), 1.001 * np.eye(2), np.eye(2)])
-    zero = np.zeros((3, len(manipulator.home.X)))
+    R = np.stack([np.diag([1.0, -1.0]), 1.001 * np.eye(2), np.eye(2), [[0, -1], [1, 0]]])
+    zero = np.zeros((4, len(manipulator.home.X)))
     calls = [
         Call(
             reference.functions["inverse_dynamics"],
@@ -89,7 +89,7 @@ def test_statuses_that_the_numpy_module_has_no_word_for() -> None:
         Call(reference.functions["pose"], {"t": zero[:, :2], "R": R}),
     ]
     for call, (_, status) in zip(calls, answers(manipulator, calls), strict=True):
-        assert status.tolist() == [3, 3, 0]
+        assert status.tolist() == [3, 3, 0, 0]
         np.testing.assert_array_equal(
             status, reference.call(call.function.name, **call.given).status
         )
