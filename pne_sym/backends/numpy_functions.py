@@ -125,7 +125,7 @@ class FunctionText:
         for entry in self.f.leg_inputs.get(leg, ()):
             lines.append(f"{entry.symbol} = {entry.vector}[{list(entry.indices)}[leg]]")
         lines += text.statements(block.assignments)
-        lines += self._required(block.checks, "m.every({})")
+        lines += self._required(block.checks, "m.every(leg, {})")
         if block.sums:
             values = [self._of(value) for _, value in block.sums]
             lines.append("sums = m.added(sums, leg, (")
