@@ -15,7 +15,7 @@ from pne_sym.backends.numpy_text import WIDTH, PythonText
 from pne_sym.backends.scalar import wrap
 from pne_sym.program.count import count_function
 from pne_sym.program.ir import Block, Check, Function
-from pne_sym.program.slices import columns, flat_places, slices, symbols
+from pne_sym.program.slices import columns, flat_places, slices
 
 SIZES = {"X": "NQ", "V": "NV", "A": "NV", "q": "NJ"}
 _MATH = ("sqrt", "sin", "cos", "atan2", "least")
@@ -55,6 +55,7 @@ class FunctionText:
 
     def __init__(self, bundle: Bundle, function: Function, places: Places, *, judged: bool) -> None:
         self.bundle, self.f, self.places, self.judged = bundle, function, places, judged
+        self.reads = slices(function).reads
         self.outside, self.inside = PythonText(bundle), PythonText(bundle, indent=8)
 
     def text(self) -> str:
@@ -92,8 +93,7 @@ class FunctionText:
     # ---- parts -------------------------------------------------------------------------------
 
     def _shared(self) -> list[str]:
-        read = set[str]().union(*map(symbols, self.f.blocks)) | slices(self.f).reads_before
-        return [name for name in self.f.shared if name in read]
+        return [name for name in self.f.shared if name in self.reads]
 
     def _inputs(self) -> list[str]:
         """Names for prepared values, and for the entries of the input vectors that are read."""
@@ -101,11 +101,12 @@ class FunctionText:
         if self._shared() or any(b.leg_type for b in self.f.blocks):
             lines.append(f'shared, legs = m.constants("{self.f.name}")')
         lines += self.outside.names(self._shared(), "shared")
-        read = set[str]().union(*map(symbols, self.f.blocks)) | slices(self.f).reads_before
         for vector in self.f.inputs:
             size = self.bundle.coordinates.sizes[SIZES[vector]]
             lines += [
-                f"{vector}_{k} = {vector}[{k}]" for k in range(size) if f"{vector}_{k}" in read
+                f"{vector}_{k} = {vector}[{k}]"
+                for k in range(size)
+                if f"{vector}_{k}" in self.reads
             ]
         return lines
 
@@ -124,7 +125,7 @@ class FunctionText:
         for entry in self.f.leg_inputs.get(leg, ()):
             lines.append(f"{entry.symbol} = {entry.vector}[{list(entry.indices)}[leg]]")
         lines += text.statements(block.assignments)
-        lines += self._required(block.checks, "m.every({})")
+        lines += self._required(block.checks, "m.every(leg, {})")
         if block.sums:
             values = [self._of(value) for _, value in block.sums]
             lines.append("sums = m.added(sums, leg, (")

@@ -46,20 +46,10 @@ class Slices:
         """Names that are read where the inputs are named, and before the legs."""
         return symbols(self.before) | read_by(self.function.unpack)
 
-    def entries(self, vector: str, size: int) -> list[int]:
-        """Entries of an input vector that are read."""
-        read = read_by(self.function.unpack)
-        return [k for k in range(size) if f"{vector}_{k}" in read]
-
-    def shared(self, block: Block | None) -> list[str]:
-        """Prepared values, not per leg, that a part reads."""
-        read = self.reads_before if block is self.before else symbols(block)
-        return [name for name in self.function.shared if name in read]
-
-    def passed_to(self, block: Block | None) -> list[str]:
-        """Names of `passed` that a part reads."""
-        read = symbols(block)
-        return [name for name in self.passed if name in read]
+    @property
+    def reads(self) -> set[str]:
+        """All names that are read."""
+        return self.reads_before.union(*map(symbols, self.function.blocks))
 
 
 def slices(function: Function) -> Slices:

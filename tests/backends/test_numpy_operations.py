@@ -79,6 +79,7 @@ def operands(shapes: tuple[Shape, ...], states: int, operation: str) -> list[Any
         found = [np.abs(a) + 0.1 for a in found]
     if operation in ("solve", "least_norm") and shapes[0][0] > 1:
         found[0][1, 1] = -3.0 * found[0][1, 0]
+        found[0][1, 1, -1] *= 1.0 + 1e-13  # nearly: below the threshold of pivots
     found[0][2] = np.nan
     return found
 
