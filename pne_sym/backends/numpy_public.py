@@ -161,7 +161,7 @@ def _docstring(function: PublicFunction) -> list[str]:
             "nearest: take the rotation that is nearest to R: the least sum of squared differences."
         )
     inputs += ["p: parameters, by default those of the specification."] * function.needs_model
-    outputs = [_described("", a) for a in function.outputs]
+    outputs = [_described(a.label, a) for a in function.outputs]
     outputs += [f"status: {_STATUS} (...)."] * function.gives_status
     return [
         *_filled(f'"""{function.meaning}', ""),
@@ -188,7 +188,7 @@ _STATUS = "0 OK, 1 unreachable, 2 singular leg, 3 invalid, 4 not converged, as i
 
 def _described(name: str, argument: Argument) -> str:
     shape = ", ".join(("...", *argument.dimensions)) if argument.dimensions else "...,"
-    meaning = f"{name}: {argument.meaning}" if name else argument.meaning
+    meaning = f"{name}: {argument.meaning}"
     if argument.default and "by default" not in meaning:
         meaning += f", by default {_BY_DEFAULT[argument.default]}"
     return f"{meaning} ({shape})."

@@ -23,6 +23,7 @@ from pne_sym.program.public import (
     Search,
     Value,
     verify_steps,
+    with_readable_names,
 )
 
 _SIZES = {
@@ -68,6 +69,7 @@ def public_functions(derivation: Derivation, program: Program) -> tuple[PublicFu
         *writer.of_kinematics(),
         *pose_functions(coordinates),
     )
+    found = tuple(map(with_readable_names, found))
     for function in found:
         verify_steps(function)
     return tuple(with_notes(function, coordinates, guessed=guessed) for function in found)
@@ -94,7 +96,7 @@ class _Writer:
 
     def made(self, value: Value, name: str, meaning: str, *dimensions: str) -> Argument:
         """An output: an array under the name that users know."""
-        return Argument(Value(value.name, value.shape), dimensions, f"{name}: {meaning}")
+        return Argument(Value(value.name, value.shape), dimensions, meaning, label=name)
 
     def function(
         self,

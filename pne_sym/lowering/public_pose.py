@@ -46,7 +46,7 @@ def _orientation(a: Algorithm, at: _Layout, X: Value) -> Value:
 
 
 def _matrix(value: Value, at: _Layout, name: str) -> Argument:
-    return Argument(value, (str(at.sides),) * 2, f"{name}: rotation matrix base_R_platform")
+    return Argument(value, (str(at.sides),) * 2, "rotation matrix base_R_platform", label=name)
 
 
 def _rotation(at: _Layout, X: Argument) -> PublicFunction:
@@ -65,7 +65,7 @@ def _position(at: _Layout) -> Argument:
 def _assembled(a: Algorithm, at: _Layout, orientation: Value, size: int) -> Argument:
     """X of a position and an orientation; extra coordinates zero."""
     X = a.apply("join", _position(at).value, orientation)
-    return Argument(a.apply("extend", X, numbers=[size]), ("NQ",), "X: pose")
+    return Argument(a.apply("extend", X, numbers=[size]), ("NQ",), "pose", label="X")
 
 
 def _pose(at: _Layout, n: dict[str, int]) -> PublicFunction:
@@ -99,7 +99,7 @@ def _rate(at: _Layout, X: Argument, V: Argument) -> PublicFunction:
             rate = a.apply("join", rate, extra)
     else:
         rate = a.apply("same", rate)
-    out = Argument(rate, ("NQ",), "X_dot: rate of X")
+    out = Argument(rate, ("NQ",), "rate of X", label="X_dot")
     return _helper("X_dot", "Rate of X at the velocity V.", (X, V), a, out)
 
 

@@ -8,7 +8,9 @@ equations ...) to arrays of one state.  Every operation has one definition, in
 from __future__ import annotations
 
 import enum
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from keyword import iskeyword
 
 
 class Default(enum.StrEnum):
@@ -50,6 +52,7 @@ class Argument:
         meaning: in words, with the unit where there is one.
         default: what stands for it where it is not given; None where it is required.
         positive: where it is given, its entries must be positive and finite, whatever the state.
+        label: of an output, what users call it; its array may have to have another name.
     """
 
     value: Value
@@ -57,6 +60,7 @@ class Argument:
     meaning: str
     default: Default | None = None
     positive: bool = False
+    label: str = ""
 
     @property
     def name(self) -> str:
@@ -169,6 +173,40 @@ class PublicFunction:
         """What a back end must provide to print it: operations by name, "search" for searches."""
         applied = {s.operation for s in self.steps if isinstance(s, Apply)}
         return frozenset(applied | {"search" for s in self.steps if isinstance(s, Search)})
+
+
+def with_readable_names(function: PublicFunction) -> PublicFunction:
+    """The same steps, with arrays called as users and the program call them where that is free."""
+    taken = {argument.name for argument in function.inputs}
+    names = {name: name for name in taken}
+    wanted = [(output.name, output.label) for output in function.outputs]
+    for step in function.steps:
+        if isinstance(step, Run):
+            ending = f"_of_{step.function}"
+            wanted += [(t.name, t.name.removesuffix(ending)) for t in step.targets]
+    for name, wish in wanted:
+        label = f"{wish}_" if iskeyword(wish) else wish
+        if name not in names and label not in taken:
+            names[name] = label
+            taken.add(label)
+
+    def named(value: Value) -> Value:
+        return replace(value, name=names.get(value.name, value.name))
+
+    return replace(
+        function,
+        outputs=tuple(replace(o, value=named(o.value)) for o in function.outputs),
+        steps=tuple(_renamed(step, named) for step in function.steps),
+    )
+
+
+def _renamed(step: Step, named: Callable[[Value], Value]) -> Step:
+    if isinstance(step, Search):
+        return replace(step, start=named(step.start), target=named(step.target))
+    targets = tuple(map(named, step.targets))
+    if isinstance(step, Run):
+        return replace(step, targets=targets)
+    return replace(step, targets=targets, operands=tuple(map(named, step.operands)))
 
 
 class StepError(Exception):

@@ -31,7 +31,7 @@ def appended(code: str) -> Edit:
 NAMED: dict[str, tuple[str, Edit]] = {
     "the wrench's sign": (
         "planar_3rpr.py",
-        substituted(r"required_of_required - (\w+)", r"required_of_required + \1"),
+        substituted(r"required - (extend_\d+)", r"required + \1"),
     ),
     "another rotation": (
         "planar_3rpr.py",

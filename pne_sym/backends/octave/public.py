@@ -173,7 +173,7 @@ class Public(MatlabText):
         for a in function.optional:
             yield f"%   {a.name} ({_shape(a)}): {a.meaning}; by default {a.default}."
         for name, a in zip(results, function.outputs, strict=True):
-            yield f"%   {name} ({_shape(a)}): {a.meaning.partition(': ')[2] or a.meaning}."
+            yield f"%   {name} ({_shape(a)}): {a.meaning}."
         yield from _STATUS
         yield "%   n states side by side; an argument of one column counts for all of them."
         if len(names) > len(function.required):
@@ -192,9 +192,8 @@ def search_name(step: Search) -> str:
 
 def _result(a: Argument, function: PublicFunction) -> str:
     """The name that users know, unless it is the function's or an argument's own."""
-    name = a.meaning.partition(":")[0]
     taken = (function.name, *(i.name for i in function.inputs))
-    return "value" if name in taken else name
+    return "value" if a.label in taken else a.label
 
 
 def _shape(a: Argument) -> str:

@@ -90,7 +90,7 @@ def public_text(function: PublicFunction) -> str:
         *["    p: parameters, by default those of the specification."] * function.needs_model,
         "",
         "Returns:",
-        *(f"    {a.meaning} ({_shape(a)})." for a in function.outputs),
+        *(f"    {a.label}: {a.meaning} ({_shape(a)})." for a in function.outputs),
         '"""',
         "arguments = {  # with shape and default",
         *(f"    {row}" for row in rows),
