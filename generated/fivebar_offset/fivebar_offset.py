@@ -935,7 +935,7 @@ class _Floats:
     cos = staticmethod(lambda x: float(np.cos(x)))
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
     least = staticmethod(lambda x, y: float(np.minimum(x, y)))
-    every = staticmethod(lambda good: good)
+    every = staticmethod(lambda leg, good: good)
 
     def __init__(self, p, states):
         self.p, self.states = p, states
@@ -982,9 +982,9 @@ class _Arrays:
     def zeros(self, name):
         return np.zeros((math.prod(_SHAPES[name]), self.states))
 
-    def every(self, good):
+    def every(self, legs, good):
         """Whether it holds for all legs."""
-        return np.logical_and.reduce(good, axis=0)
+        return np.logical_and.reduce(np.broadcast_to(good, (legs.stop, self.states)), axis=0)
 
     def added(self, sums, legs, terms):
         """Sums over the legs, all at once."""
@@ -1452,7 +1452,7 @@ def _run_dynamics(m, X, V):
         Hk_a_1_rr_z = n_c_rr_t_2*q_rr_in_base_y + n_c_rr_t_3*q_rr_in_base_x
         # (M12) part of the constraint's second derivative that does not hold the acceleration
         gamma_c1_rr_t = n_c_rr_x*rel_rr_o_x
-        ok = ok & m.every((abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
+        ok = ok & m.every(leg, (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
         sums = m.added(sums, leg, (
         d_c_rr_t_2, d_c_rr_t_3, d_c_rr_t_4, M_ta_t, M_ta_t_2, M_aa_t, U_rr_t, U_rr_t_2, Z_a_t,
         ))
@@ -1631,8 +1631,8 @@ def _run_dynamics(m, X, V):
         # (M9) moment of the column's unit force about the platform origin
         H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_2 + q_rrr_in_base_y*w_1_rrr_t
         ok = (
-        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
-            0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
+            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
         sums = m.added(sums, leg, (
         Q_rrr_t_5, Q_rrr_t_6, Q_rrr_t_7, M_ta_t_3, M_ta_t_4, M_aa_t_2, U_rrr_in_base_x,
@@ -1728,7 +1728,7 @@ def _run_M(m, X):
         M_ta_t_2 = d_c_rr_t_3*q_rr_in_base_y - d_c_rr_t_4*q_rr_in_base_x
         # (M3) rotational block of M
         M_aa_t = M_ta_t*q_rr_in_base_y - M_ta_t_2*q_rr_in_base_x
-        ok = ok & m.every((abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
+        ok = ok & m.every(leg, (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
         sums = m.added(sums, leg, (
         d_c_rr_t_2, d_c_rr_t_3, d_c_rr_t_4, M_ta_t, M_ta_t_2, M_aa_t,
         ))
@@ -1819,8 +1819,8 @@ def _run_M(m, X):
         # (M3) rotational block of M
         M_aa_t_2 = M_ta_t_3*q_rrr_in_base_y + M_ta_t_4*q_rrr_in_base_x
         ok = (
-        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
-            0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
+            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
         sums = m.added(sums, leg, (
         Q_rrr_t_5, Q_rrr_t_6, Q_rrr_t_7, M_ta_t_3, M_ta_t_4, M_aa_t_2,
@@ -1919,7 +1919,7 @@ def _run_Z(m, X, V):
         U_rr_t_2 = G_rr_o_t*axis_y_rr_axes1_in_base_y
         # (M7) rotational part of Z
         Z_a_t = U_rr_t_2*q_rr_in_base_x - U_rr_t*q_rr_in_base_y
-        ok = ok & m.every((abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
+        ok = ok & m.every(leg, (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
         sums = m.added(sums, leg, (
         U_rr_t, U_rr_t_2, Z_a_t,
         ))
@@ -2057,8 +2057,8 @@ def _run_Z(m, X, V):
         # (M7) rotational part of Z
         Z_a_t_2 = U_rrr_in_base_y*q_rrr_in_base_x - U_rrr_in_base_x*q_rrr_in_base_y
         ok = (
-        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
-            0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
+            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
         sums = m.added(sums, leg, (
         U_rrr_in_base_x, U_rrr_in_base_y, Z_a_t_2,
@@ -2120,7 +2120,7 @@ def _run_H(m, X):
         )
         # (M8) moment of the column's unit force about the platform origin
         H_a_1_rr_z = q_rr_in_base_x*w_1_rr_t_2 - q_rr_in_base_y*w_1_rr_t
-        ok = ok & m.every((abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
+        ok = ok & m.every(leg, (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
         out_H[_H_rr[0][leg]] = w_1_rr_t
         out_H[_H_rr[1][leg]] = w_1_rr_t_2
         out_H[_H_rr[2][leg]] = H_a_1_rr_z
@@ -2184,8 +2184,8 @@ def _run_H(m, X):
         # (M9) moment of the column's unit force about the platform origin
         H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_2 + q_rrr_in_base_y*w_1_rrr_t
         ok = (
-        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
-            0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
+            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
         out_H[_H_rrr[0][leg]] = -w_1_rrr_t
         out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
@@ -2234,7 +2234,7 @@ def _run_Hk(m, X):
         n_c_rr_t_3 = n_c_rr_x*(c_1_rr*rr_base_frame_xy - rr_base_frame_xx*s_1_rr)
         # (M10) moment of the column's unit force about the platform origin
         Hk_a_1_rr_z = n_c_rr_t_2*q_rr_in_base_y + n_c_rr_t_3*q_rr_in_base_x
-        ok = ok & m.every((abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
+        ok = ok & m.every(leg, (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
         out_Hk[_Hk_rr[0][leg]] = -n_c_rr_t_2
         out_Hk[_Hk_rr[1][leg]] = n_c_rr_t_3
         out_Hk[_Hk_rr[2][leg]] = Hk_a_1_rr_z
@@ -2303,7 +2303,7 @@ def _run_constraint_bias(m, X, V):
         )
         # (M12) part of the constraint's second derivative that does not hold the acceleration
         gamma_c1_rr_t = n_c_rr_x*rel_rr_o_x
-        ok = ok & m.every((abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
+        ok = ok & m.every(leg, (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
         out_constraint_bias[_constraint_bias_rr[0][leg]] = -gamma_c1_rr_t
     return ok, (out_constraint_bias,)
 
@@ -2409,7 +2409,7 @@ def _run_required(m, X, V, A):
         c_rr_t_2 = G_rr_t*axis_y_rr_axes1_in_base_y
         # (E5) moment that actuators and external wrench must give
         R_a_t = c_rr_t_2*q_rr_in_base_x - c_rr_t*q_rr_in_base_y
-        ok = ok & m.every((abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
+        ok = ok & m.every(leg, (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
         sums = m.added(sums, leg, (
         c_rr_t, c_rr_t_2, R_a_t,
         ))
@@ -2560,8 +2560,8 @@ def _run_required(m, X, V, A):
         # (E5) moment that actuators and external wrench must give
         R_a_t_2 = c_rrr_in_base_y*q_rrr_in_base_x - c_rrr_in_base_x*q_rrr_in_base_y
         ok = (
-        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
-            0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
+            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
         sums = m.added(sums, leg, (
         c_rrr_in_base_x, c_rrr_in_base_y, R_a_t_2,
@@ -2618,7 +2618,7 @@ def _run_inverse_kinematics(m, X):
         atan2(inv_root_1_rr*rho2_1_rr_t*rr_platform_joint_offset_x,
             inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x)
         )
-        ok = ok & m.every((abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
+        ok = ok & m.every(leg, (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
         out_q[_q_rr[0][leg]] = q_1_rr
     for leg, k in legs[1]:
         (
@@ -2662,8 +2662,8 @@ def _run_inverse_kinematics(m, X):
             inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x)
         )
         ok = (
-        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
-            0.0))
+        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
+            >= 0.0))
         )
         out_q[_q_rrr[0][leg]] = q_1_rrr
         out_q[_q_rrr[1][leg]] = q_2_rrr
@@ -2722,7 +2722,7 @@ def _run_joint_rates(m, X, V):
             rr_base_frame_xx*s_1_rr) + S_dot_rr_y*(c_1_rr*rr_base_frame_yy -
             rr_base_frame_yx*s_1_rr))
         )
-        ok = ok & m.every((abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
+        ok = ok & m.every(leg, (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
         out_qd[_qd_rr[0][leg]] = qd_1_rr
     for leg, k in legs[1]:
         (
@@ -2794,8 +2794,8 @@ def _run_joint_rates(m, X, V):
             r_1_rrr_t*s_2_rrr))
         )
         ok = (
-        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
-            0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
+            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
         out_qd[_qd_rrr[0][leg]] = -qd_1_rrr
         out_qd[_qd_rrr[1][leg]] = qd_2_rrr
@@ -2864,7 +2864,7 @@ def _run_joint_accelerations(m, X, V, A):
             rr_base_frame_xx*s_1_rr) + S_ddot_rr_y*(c_1_rr*rr_base_frame_yy -
             rr_base_frame_yx*s_1_rr))
         )
-        ok = ok & m.every((abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
+        ok = ok & m.every(leg, (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
         out_qdd[_qdd_rr[0][leg]] = qdd_1_rr
     for leg, k in legs[1]:
         (
@@ -2965,8 +2965,8 @@ def _run_joint_accelerations(m, X, V, A):
         qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x
         qdd_2_rrr = inv_rrr_platform_joint_offset_x*(rel_rrr_y + qdd_1_rrr*r_1_rrr_r0_x)
         ok = (
-        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
-            0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
+            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
         out_qdd[_qdd_rrr[0][leg]] = -qdd_1_rrr
         out_qdd[_qdd_rrr[1][leg]] = qdd_2_rrr
@@ -3010,7 +3010,7 @@ def _run_constraints(m, X):
             inv_root_1_rr*rho2_1_rr_t_2*rho2_1_rr_t_2*rr_platform_joint_offset_x -
             rr_platform_joint_offset_x)
         )
-        ok = ok & m.every((abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
+        ok = ok & m.every(leg, (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
         out_constraints[_constraints_rr[0][leg]] = -phi_c1_rr_t
     return ok, (out_constraints,)
 
@@ -3094,7 +3094,7 @@ def _run_legs(m, X, V, A):
         # (rr-N14) leg force on the platform without actuation and without the mass at the connection point
         c_rr_t = G_rr_t*axis_y_rr_axes1_in_base_x
         c_rr_t_2 = G_rr_t*axis_y_rr_axes1_in_base_y
-        ok = ok & m.every((abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
+        ok = ok & m.every(leg, (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
         out_leg_force[_leg_force_rr[0][leg]] = -c_rr_t
         out_leg_force[_leg_force_rr[1][leg]] = -c_rr_t_2
         out_drive[_drive_rr[0][leg]] = w_1_rr_t
@@ -3243,8 +3243,8 @@ def _run_legs(m, X, V, A):
         axis_y_rrr_axes2_in_base_y*c_true_rrr_y - axis_y_rrr_axes2_in_base_x*c_true_rrr_x
         )
         ok = (
-        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
-            0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
+            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
         out_leg_force[_leg_force_rrr[0][leg]] = c_true_rrr_in_base_x
         out_leg_force[_leg_force_rrr[1][leg]] = c_true_rrr_in_base_y
@@ -3303,7 +3303,7 @@ def _run_potential(m, X):
             gravity_y*(potential_t_2 + h_1_rr_r0_x*rr_base_frame_yx +
             h_1_rr_r0_y*rr_base_frame_yy)
         )
-        ok = ok & m.every((abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
+        ok = ok & m.every(leg, (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
         sums = m.added(sums, leg, (
         potential_t_4,
         ))
@@ -3359,8 +3359,8 @@ def _run_potential(m, X):
             - b_rrr_r0_x*s_1_rrr) - h_2_rrr_x*s_2_rrr)
         )
         ok = (
-        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
-            0.0))
+        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
+            >= 0.0))
         )
         sums = m.added(sums, leg, (
         potential_t_5,
@@ -3438,7 +3438,7 @@ def _run_condition(m, X):
         # (rr-K4) amplitude: off the manifold the nearest angle is taken
         pivot_size = abs(rho2_1_rr)
         pivot_root = sqrt(inv_root_1_rr_t_2*pivot_size)
-        clear = clear & m.every((abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
+        clear = clear & m.every(leg, (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t))
         sums = m.added(sums, leg, (
         spread_t_3,
         ))
@@ -3522,10 +3522,10 @@ def _run_condition(m, X):
         # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
         least_pivots = least(sqrt(inv_rho2_1_rrr_t_4*pivot_size_2), inv_size_rrr*pivot_size_3)
         clear = (
-        clear & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) &
+        clear & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) &
             (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
-        reached = reached & m.every((disc_1_rrr >= 0.0))
+        reached = reached & m.every(leg, (disc_1_rrr >= 0.0))
         sums = m.added(sums, leg, (
         spread_t_6,
         ))
@@ -3546,199 +3546,193 @@ _DEFAULT = Parameters()
 
 
 def _steps_M(m, X):
-    M_of_M, = m.run(_run_M, ("M",), X)
-    return (M_of_M,)
+    M, = m.run(_run_M, ("M",), X)
+    return (M,)
 
 
 def _steps_Z(m, X, V):
-    Z_of_Z, = m.run(_run_Z, ("Z",), X, V)
-    return (Z_of_Z,)
+    Z, = m.run(_run_Z, ("Z",), X, V)
+    return (Z,)
 
 
 def _steps_H(m, X):
-    H_of_H, = m.run(_run_H, ("H",), X)
-    return (H_of_H,)
+    H, = m.run(_run_H, ("H",), X)
+    return (H,)
 
 
 def _steps_Hk(m, X):
-    Hk_of_Hk, = m.run(_run_Hk, ("Hk",), X)
-    return (Hk_of_Hk,)
+    Hk, = m.run(_run_Hk, ("Hk",), X)
+    return (Hk,)
 
 
 def _steps_constraints(m, X):
-    constraints_of_constraints, = m.run(_run_constraints, ("constraints",), X)
-    return (constraints_of_constraints,)
+    constraints, = m.run(_run_constraints, ("constraints",), X)
+    return (constraints,)
 
 
 def _steps_constraint_bias(m, X, V):
-    constraint_bias_of_constraint_bias, = m.run(_run_constraint_bias, ("constraint_bias",), X, V)
-    return (constraint_bias_of_constraint_bias,)
+    constraint_bias, = m.run(_run_constraint_bias, ("constraint_bias",), X, V)
+    return (constraint_bias,)
 
 
 def _steps_inverse_kinematics(m, X):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
-    return (q_of_inverse_kinematics,)
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    return (q,)
 
 
 def _steps_joint_rates(m, X, V):
-    qd_of_joint_rates, = m.run(_run_joint_rates, ("qd",), X, V)
-    return (qd_of_joint_rates,)
+    qd, = m.run(_run_joint_rates, ("qd",), X, V)
+    return (qd,)
 
 
 def _steps_joint_accelerations(m, X, V, A):
-    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
-    return (qdd_of_joint_accelerations,)
+    qdd, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
+    return (qdd,)
 
 
 def _steps_dynamics(m, X, V):
     (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics, Hk_of_dynamics, constraint_bias_of_dynamics,
+    M, Z, H, Hk, constraint_bias,
     ) = m.run(_run_dynamics, ("M", "Z", "H", "Hk", "constraint_bias"), X, V)
-    return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
+    return (M, Z, H,)
 
 
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
-    (
-    required_of_required, H_of_required, Hk_of_required,
-    ) = m.run(_run_required, ("required", "H", "Hk"), X, V, A)
+    required, H, Hk = m.run(_run_required, ("required", "H", "Hk"), X, V, A)
     extend_1 = wrench
-    subtract_2 = required_of_required - extend_1
-    beside_3 = np.concatenate((H_of_required, Hk_of_required), axis=1)
+    subtract_2 = required - extend_1
+    beside_3 = np.concatenate((H, Hk), axis=1)
     solve_4 = _solve(beside_3, subtract_2)
-    split_5, split_6 = solve_4[:2], solve_4[2:]
-    return (split_5, split_6,)
+    tau, lambda_ = solve_4[:2], solve_4[2:]
+    return (tau, lambda_,)
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
     (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics, Hk_of_dynamics, constraint_bias_of_dynamics,
+    M, Z, H, Hk, constraint_bias,
     ) = m.run(_run_dynamics, ("M", "Z", "H", "Hk", "constraint_bias"), X, V)
-    times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
+    times_1 = np.einsum("ijs,js->is", H, tau)
     extend_2 = wrench
     add_3 = times_1 + extend_2
-    subtract_4 = add_3 - Z_of_dynamics
-    negative_5 = -constraint_bias_of_dynamics
+    subtract_4 = add_3 - Z
+    negative_5 = -constraint_bias
     join_6 = np.concatenate((subtract_4, negative_5))
-    saddle_7 = _saddle(M_of_dynamics, Hk_of_dynamics)
+    saddle_7 = _saddle(M, Hk)
     solve_8 = _solve(saddle_7, join_6)
-    split_9, split_10 = solve_8[:3], solve_8[3:]
-    return (split_9, split_10,)
+    A, lambda_ = solve_8[:3], solve_8[3:]
+    return (A, lambda_,)
 
 
 def _steps_complete_acceleration(m, X, V, A, wrench):
-    same_1 = A
-    return (same_1,)
+    completed = A
+    return (completed,)
 
 
 def _steps_leg_reactions(m, X, V, A, wrench):
-    (
-    required_of_required, H_of_required, Hk_of_required,
-    ) = m.run(_run_required, ("required", "H", "Hk"), X, V, A)
+    required, H, Hk = m.run(_run_required, ("required", "H", "Hk"), X, V, A)
     extend_1 = wrench
-    subtract_2 = required_of_required - extend_1
-    beside_3 = np.concatenate((H_of_required, Hk_of_required), axis=1)
+    subtract_2 = required - extend_1
+    beside_3 = np.concatenate((H, Hk), axis=1)
     solve_4 = _solve(beside_3, subtract_2)
     split_5, split_6 = solve_4[:2], solve_4[2:]
     (
-    leg_force_of_legs, drive_of_legs, constraint_direction_of_legs,
+    leg_force, drive, constraint_direction,
     ) = m.run(_run_legs, ("leg_force", "drive", "constraint_direction"), X, V, A)
-    add_forces_7 = _with_forces(leg_force_of_legs, split_5, drive_of_legs, [0, 1])
-    add_forces_8 = _with_forces(add_forces_7, split_6, constraint_direction_of_legs, [0])
-    return (add_forces_8,)
+    add_forces_7 = _with_forces(leg_force, split_5, drive, [0, 1])
+    forces = _with_forces(add_forces_7, split_6, constraint_direction, [0])
+    return (forces,)
 
 
 def _steps_energy(m, X, V):
-    M_of_M, = m.run(_run_M, ("M",), X)
+    M, = m.run(_run_M, ("M",), X)
     potential_of_potential, = m.run(_run_potential, ("potential",), X)
-    half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
-    entry_2 = potential_of_potential[0]
-    return (half_form_1, entry_2,)
+    kinetic = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M, V))
+    potential = potential_of_potential[0]
+    return (kinetic, potential,)
 
 
 def _steps_null_space(m, X):
-    H_of_H, = m.run(_run_H, ("H",), X)
-    null_basis_1 = _null_basis(H_of_H, 2)
-    return (null_basis_1,)
+    H, = m.run(_run_H, ("H",), X)
+    basis = _null_basis(H, 2)
+    return (basis,)
 
 
 def _steps_condition(m, X, length):
     (
-    H_of_condition, Hk_of_condition, lengths_of_condition, pivots_of_condition,
-        reach_of_condition,
+    H, Hk, lengths, legs, reach,
     ) = m.run(_run_condition, ("H", "Hk", "lengths", "pivots", "reach"), X)
-    choose_length_1 = _chosen_length(lengths_of_condition, length)
-    divide_rows_2 = _rows_divided(H_of_condition, choose_length_1, [2])
-    singular_values_3 = _singular_values(divide_rows_2)
-    return (singular_values_3, pivots_of_condition,)
+    choose_length_1 = _chosen_length(lengths, length)
+    divide_rows_2 = _rows_divided(H, choose_length_1, [2])
+    sigma = _singular_values(divide_rows_2)
+    return (sigma, legs,)
 
 
 def _steps_condition_constrained(m, X, length):
     (
-    H_of_condition, Hk_of_condition, lengths_of_condition, pivots_of_condition,
-        reach_of_condition,
+    H, Hk, lengths, legs, reach,
     ) = m.run(_run_condition, ("H", "Hk", "lengths", "pivots", "reach"), X)
-    beside_1 = np.concatenate((H_of_condition, Hk_of_condition), axis=1)
-    choose_length_2 = _chosen_length(lengths_of_condition, length)
+    beside_1 = np.concatenate((H, Hk), axis=1)
+    choose_length_2 = _chosen_length(lengths, length)
     divide_rows_3 = _rows_divided(beside_1, choose_length_2, [2])
-    singular_values_4 = _singular_values(divide_rows_3)
-    return (singular_values_4, pivots_of_condition,)
+    sigma = _singular_values(divide_rows_3)
+    return (sigma, legs,)
 
 
 def _steps_mismatch(m, X, q_actuated):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
-    take_1 = q_of_inverse_kinematics[0:2]
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    take_1 = q[0:2]
     subtract_2 = q_actuated - take_1
     wrap_turns_3 = _wrapped(subtract_2, [0, 1])
-    constraints_of_constraints, = m.run(_run_constraints, ("constraints",), X)
-    negative_4 = -constraints_of_constraints
-    join_5 = np.concatenate((wrap_turns_3, negative_4))
-    return (join_5,)
+    constraints, = m.run(_run_constraints, ("constraints",), X)
+    negative_4 = -constraints
+    gap = np.concatenate((wrap_turns_3, negative_4))
+    return (gap,)
 
 
 def _steps_slope(m, X):
-    H_of_H, = m.run(_run_H, ("H",), X)
-    Hk_of_Hk, = m.run(_run_Hk, ("Hk",), X)
-    beside_1 = np.concatenate((H_of_H, Hk_of_Hk), axis=1)
-    return (beside_1,)
+    H, = m.run(_run_H, ("H",), X)
+    Hk, = m.run(_run_Hk, ("Hk",), X)
+    slope = np.concatenate((H, Hk), axis=1)
+    return (slope,)
 
 
 def _steps_forward_kinematics(m, q_actuated, X0):
-    X_found = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
-    return (X_found,)
+    X = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    return (X,)
 
 
 def _steps_constraint_gap(m, X):
-    constraints_of_constraints, = m.run(_run_constraints, ("constraints",), X)
-    negative_1 = -constraints_of_constraints
-    return (negative_1,)
+    constraints, = m.run(_run_constraints, ("constraints",), X)
+    gap = -constraints
+    return (gap,)
 
 
 def _steps_constraint_slope(m, X):
-    Hk_of_Hk, = m.run(_run_Hk, ("Hk",), X)
-    return (Hk_of_Hk,)
+    slope, = m.run(_run_Hk, ("Hk",), X)
+    return (slope,)
 
 
 def _steps_project(m, X):
-    X_found = _search(m, _steps_constraint_gap, _steps_constraint_slope, X, (), (), False)
-    return (X_found,)
+    projected = _search(m, _steps_constraint_gap, _steps_constraint_slope, X, (), (), False)
+    return (projected,)
 
 
 def _steps_rotation(m, X):
     take_1 = X[2:3]
-    rotation_of_angle_2 = _rotation_of_angle(take_1)
-    return (rotation_of_angle_2,)
+    R = _rotation_of_angle(take_1)
+    return (R,)
 
 
 def _steps_pose(m, t, R):
     angle_of_rotation_1 = _angle_of_rotation(R)
     join_2 = np.concatenate((t, angle_of_rotation_1))
-    extend_3 = join_2
-    return (extend_3,)
+    X = join_2
+    return (X,)
 
 
 def _steps_X_dot(m, X, V):
-    same_1 = V
-    return (same_1,)
+    X_dot = V
+    return (X_dot,)
 
 
 def M(X, p=None):

@@ -687,7 +687,7 @@ class _Floats:
     cos = staticmethod(lambda x: float(np.cos(x)))
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
     least = staticmethod(lambda x, y: float(np.minimum(x, y)))
-    every = staticmethod(lambda good: good)
+    every = staticmethod(lambda leg, good: good)
 
     def __init__(self, p, states):
         self.p, self.states = p, states
@@ -734,9 +734,9 @@ class _Arrays:
     def zeros(self, name):
         return np.zeros((math.prod(_SHAPES[name]), self.states))
 
-    def every(self, good):
+    def every(self, legs, good):
         """Whether it holds for all legs."""
-        return np.logical_and.reduce(good, axis=0)
+        return np.logical_and.reduce(np.broadcast_to(good, (legs.stop, self.states)), axis=0)
 
     def added(self, sums, legs, terms):
         """Sums over the legs, all at once."""
@@ -1168,7 +1168,7 @@ def _run_dynamics(m, X, V):
         w_1_t = axis_y_rrr_axes2_in_base_y*inv_r_1_r0_y
         w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_r0_y
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
             (abs(-r_1_r0_y) > _TOLERANCE * size))
         )
         sums = m.added(sums, leg, (
@@ -1277,7 +1277,7 @@ def _run_M(m, X):
         Q_t_6 = Q_t_3*axis_y_rrr_axes2_in_base_x + Q_t_4*axis_y_rrr_axes2_in_base_y
         Q_t_7 = d_c_yy + 2.0*Q_t_4*axis_y_rrr_axes2_in_base_x
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
             (abs(-r_1_r0_y) > _TOLERANCE * size))
         )
         sums = m.added(sums, leg, (
@@ -1408,7 +1408,7 @@ def _run_Z(m, X, V):
         U_in_base_x = -axis_y_rrr_axes2_in_base_x*c_o_y - axis_y_rrr_axes2_in_base_y*c_o_x
         U_in_base_y = axis_y_rrr_axes2_in_base_x*c_o_x - axis_y_rrr_axes2_in_base_y*c_o_y
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
             (abs(-r_1_r0_y) > _TOLERANCE * size))
         )
         sums = m.added(sums, leg, (
@@ -1488,7 +1488,7 @@ def _run_H(m, X):
             axis_y_rrr_axes2_r1_y*rrr_base_frame_xy)
         )
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
             (abs(-r_1_r0_y) > _TOLERANCE * size))
         )
         out_H[_H_rrr[0][leg]] = -w_1_t
@@ -1629,7 +1629,7 @@ def _run_required(m, X, V, A):
         c_in_base_x = axis_y_rrr_axes2_in_base_x*c_y + axis_y_rrr_axes2_in_base_y*c_x
         c_in_base_y = axis_y_rrr_axes2_in_base_y*c_y - axis_y_rrr_axes2_in_base_x*c_x
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
             (abs(-r_1_r0_y) > _TOLERANCE * size))
         )
         sums = m.added(sums, leg, (
@@ -1696,7 +1696,9 @@ def _run_inverse_kinematics(m, X):
         atan2(-inv_Kd_1_t_5*inv_uu_2_t*root_1*rrr_joint2_offset_x*rrr_platform_joint_offset_x,
             inv_uu_2_t*rrr_platform_joint_offset_x*x_2_x)
         )
-        ok = ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0))
+        ok = (
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0))
+        )
         out_q[_q_rrr[0][leg]] = q_1
         out_q[_q_rrr[1][leg]] = q_2
     return ok, (out_q,)
@@ -1776,7 +1778,7 @@ def _run_joint_rates(m, X, V):
             axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1*(c_2*r_1_x + r_1_t*s_2))
         )
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
             (abs(-r_1_r0_y) > _TOLERANCE * size))
         )
         out_qd[_qd_rrr[0][leg]] = -qd_1
@@ -1881,7 +1883,7 @@ def _run_joint_accelerations(m, X, V, A):
         qdd_1 = inv_r_1_r0_y*rel_x
         qdd_2 = inv_rrr_platform_joint_offset_x*(rel_y + qdd_1*r_1_r0_x)
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
             (abs(-r_1_r0_y) > _TOLERANCE * size))
         )
         out_qdd[_qdd_rrr[0][leg]] = -qdd_1
@@ -2022,7 +2024,7 @@ def _run_legs(m, X, V, A):
         axis_y_rrr_axes2_in_base_y*c_true_y - axis_y_rrr_axes2_in_base_x*c_true_x
         )
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
             (abs(-r_1_r0_y) > _TOLERANCE * size))
         )
         out_leg_force[_leg_force_rrr[0][leg]] = c_true_in_base_x
@@ -2092,7 +2094,9 @@ def _run_potential(m, X):
             b_r0_y*s_1)) + (c_1*g_r0_y - g_r0_x*s_1)*(h_1_y + c_2*h_2_y +
             rrr_link1_mass*(b_r0_y*c_1 - b_r0_x*s_1) - h_2_x*s_2)
         )
-        ok = ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0))
+        ok = (
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0))
+        )
         sums = m.added(sums, leg, (
         potential_t_2,
         ))
@@ -2187,10 +2191,10 @@ def _run_condition(m, X):
         # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
         least_pivots = least(sqrt(inv_rho2_1_t_4*pivot_size), inv_size*pivot_size_2)
         clear = (
-        clear & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (abs(-r_1_r0_y) >
-            _TOLERANCE * size))
+        clear & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (abs(-r_1_r0_y)
+            > _TOLERANCE * size))
         )
-        reached = reached & m.every((disc_1 >= 0.0))
+        reached = reached & m.every(leg, (disc_1 >= 0.0))
         sums = m.added(sums, leg, (
         spread_t_4,
         ))
@@ -2210,111 +2214,109 @@ _DEFAULT = Parameters()
 
 
 def _steps_M(m, X):
-    M_of_M, = m.run(_run_M, ("M",), X)
-    return (M_of_M,)
+    M, = m.run(_run_M, ("M",), X)
+    return (M,)
 
 
 def _steps_Z(m, X, V):
-    Z_of_Z, = m.run(_run_Z, ("Z",), X, V)
-    return (Z_of_Z,)
+    Z, = m.run(_run_Z, ("Z",), X, V)
+    return (Z,)
 
 
 def _steps_H(m, X):
-    H_of_H, = m.run(_run_H, ("H",), X)
-    return (H_of_H,)
+    H, = m.run(_run_H, ("H",), X)
+    return (H,)
 
 
 def _steps_inverse_kinematics(m, X):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
-    return (q_of_inverse_kinematics,)
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    return (q,)
 
 
 def _steps_joint_rates(m, X, V):
-    qd_of_joint_rates, = m.run(_run_joint_rates, ("qd",), X, V)
-    return (qd_of_joint_rates,)
+    qd, = m.run(_run_joint_rates, ("qd",), X, V)
+    return (qd,)
 
 
 def _steps_joint_accelerations(m, X, V, A):
-    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
-    return (qdd_of_joint_accelerations,)
+    qdd, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
+    return (qdd,)
 
 
 def _steps_dynamics(m, X, V):
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
-    return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
+    M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
+    return (M, Z, H,)
 
 
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
-    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
+    required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
-    subtract_2 = required_of_required - extend_1
-    solve_3 = _solve(H_of_required, subtract_2)
-    return (solve_3,)
+    subtract_2 = required - extend_1
+    tau = _solve(H, subtract_2)
+    return (tau,)
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
-    times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
+    M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
+    times_1 = np.einsum("ijs,js->is", H, tau)
     extend_2 = wrench
     add_3 = times_1 + extend_2
-    subtract_4 = add_3 - Z_of_dynamics
-    solve_5 = _solve(M_of_dynamics, subtract_4)
-    return (solve_5,)
+    subtract_4 = add_3 - Z
+    A = _solve(M, subtract_4)
+    return (A,)
 
 
 def _steps_complete_acceleration(m, X, V, A, wrench):
-    same_1 = A
-    return (same_1,)
+    completed = A
+    return (completed,)
 
 
 def _steps_leg_reactions(m, X, V, A, wrench):
-    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
+    required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
-    subtract_2 = required_of_required - extend_1
-    solve_3 = _solve(H_of_required, subtract_2)
-    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
-    add_forces_4 = _with_forces(leg_force_of_legs, solve_3, drive_of_legs, [0, 1])
-    return (add_forces_4,)
+    subtract_2 = required - extend_1
+    solve_3 = _solve(H, subtract_2)
+    leg_force, drive = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
+    forces = _with_forces(leg_force, solve_3, drive, [0, 1])
+    return (forces,)
 
 
 def _steps_energy(m, X, V):
-    M_of_M, = m.run(_run_M, ("M",), X)
+    M, = m.run(_run_M, ("M",), X)
     potential_of_potential, = m.run(_run_potential, ("potential",), X)
-    half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
-    entry_2 = potential_of_potential[0]
-    return (half_form_1, entry_2,)
+    kinetic = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M, V))
+    potential = potential_of_potential[0]
+    return (kinetic, potential,)
 
 
 def _steps_null_space(m, X):
-    H_of_H, = m.run(_run_H, ("H",), X)
-    null_basis_1 = _null_basis(H_of_H, 2)
-    return (null_basis_1,)
+    H, = m.run(_run_H, ("H",), X)
+    basis = _null_basis(H, 2)
+    return (basis,)
 
 
 def _steps_condition(m, X, length):
-    (
-    H_of_condition, lengths_of_condition, pivots_of_condition, reach_of_condition,
-    ) = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
-    singular_values_1 = _singular_values(H_of_condition)
-    return (singular_values_1, pivots_of_condition,)
+    H, lengths, legs, reach = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
+    sigma = _singular_values(H)
+    return (sigma, legs,)
 
 
 def _steps_mismatch(m, X, q_actuated):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
-    take_1 = q_of_inverse_kinematics[[0, 2]]
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    take_1 = q[[0, 2]]
     subtract_2 = q_actuated - take_1
-    wrap_turns_3 = _wrapped(subtract_2, [0, 1])
-    return (wrap_turns_3,)
+    gap = _wrapped(subtract_2, [0, 1])
+    return (gap,)
 
 
 def _steps_slope(m, X):
-    H_of_H, = m.run(_run_H, ("H",), X)
-    return (H_of_H,)
+    slope, = m.run(_run_H, ("H",), X)
+    return (slope,)
 
 
 def _steps_forward_kinematics(m, q_actuated, X0):
-    X_found = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
-    return (X_found,)
+    X = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    return (X,)
 
 
 def M(X, p=None):

@@ -881,7 +881,7 @@ class _Floats:
     cos = staticmethod(lambda x: float(np.cos(x)))
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
     least = staticmethod(lambda x, y: float(np.minimum(x, y)))
-    every = staticmethod(lambda good: good)
+    every = staticmethod(lambda leg, good: good)
 
     def __init__(self, p, states):
         self.p, self.states = p, states
@@ -928,9 +928,9 @@ class _Arrays:
     def zeros(self, name):
         return np.zeros((math.prod(_SHAPES[name]), self.states))
 
-    def every(self, good):
+    def every(self, legs, good):
         """Whether it holds for all legs."""
-        return np.logical_and.reduce(good, axis=0)
+        return np.logical_and.reduce(np.broadcast_to(good, (legs.stop, self.states)), axis=0)
 
     def added(self, sums, legs, terms):
         """Sums over the legs, all at once."""
@@ -1762,7 +1762,7 @@ def _run_dynamics(m, X, V):
         H_a_1_y = q_in_base_x*w_1_t_5 - q_in_base_z*w_1_t_3
         H_a_1_z = q_in_base_y*w_1_t_3 - q_in_base_x*w_1_t_4
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
             (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t) & (abs(r_1_t) > _TOLERANCE * size) &
             (abs(-v_1_t) > _TOLERANCE * size))
         )
@@ -2134,7 +2134,7 @@ def _run_M(m, X):
         M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z
         M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
             (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t) & (abs(r_1_t) > _TOLERANCE * size) &
             (abs(-v_1_t) > _TOLERANCE * size))
         )
@@ -2543,7 +2543,7 @@ def _run_Z(m, X, V):
         Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
         Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
             (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t) & (abs(r_1_t) > _TOLERANCE * size) &
             (abs(-v_1_t) > _TOLERANCE * size))
         )
@@ -2723,7 +2723,7 @@ def _run_H(m, X):
         H_a_1_y = q_in_base_x*w_1_t_5 - q_in_base_z*w_1_t_3
         H_a_1_z = q_in_base_y*w_1_t_3 - q_in_base_x*w_1_t_4
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
             (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t) & (abs(r_1_t) > _TOLERANCE * size) &
             (abs(-v_1_t) > _TOLERANCE * size))
         )
@@ -3133,7 +3133,7 @@ def _run_required(m, X, V, A):
         R_a_t_2 = c_in_base_x*q_in_base_z - c_in_base_z*q_in_base_x
         R_a_t_3 = c_in_base_y*q_in_base_x - c_in_base_x*q_in_base_y
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
             (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t) & (abs(r_1_t) > _TOLERANCE * size) &
             (abs(-v_1_t) > _TOLERANCE * size))
         )
@@ -3268,7 +3268,7 @@ def _run_inverse_kinematics(m, X):
             inv_uu_3_t*root_2*rus_platform_joint_offset_x)
         )
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
             (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t))
         )
         out_q[_q_rus[0][leg]] = q_1
@@ -3456,7 +3456,7 @@ def _run_joint_rates(m, X, V):
         )
         qd_2 = qd_1_t/r_1_t
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
             (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t) & (abs(r_1_t) > _TOLERANCE * size) &
             (abs(-v_1_t) > _TOLERANCE * size))
         )
@@ -3714,7 +3714,7 @@ def _run_joint_accelerations(m, X, V, A):
         qdd_3 = inv_rus_platform_joint_offset_x*(qdd_1*v_1_t_2 - rel_y)
         qdd_2 = inv_r_1_t*(rel_z + qdd_1*v_1_z)
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
             (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t) & (abs(r_1_t) > _TOLERANCE * size) &
             (abs(-v_1_t) > _TOLERANCE * size))
         )
@@ -4058,7 +4058,7 @@ def _run_legs(m, X, V, A):
             axis_z_rus_axes3_in_base_z*c_true_z
         )
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
             (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t) & (abs(r_1_t) > _TOLERANCE * size) &
             (abs(-v_1_t) > _TOLERANCE * size))
         )
@@ -4193,7 +4193,7 @@ def _run_potential(m, X):
             b_r0_x*s_1))
         )
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) &
             (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t))
         )
         sums = m.added(sums, leg, (
@@ -4387,11 +4387,11 @@ def _run_condition(m, X):
             inv_size*pivot_size_4), sqrt(inv_size_t*pivot_size_2))
         )
         clear = (
-        clear & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (abs(rho2_2) >
+        clear & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (abs(rho2_2) >
             _TOLERANCE * _TOLERANCE * size_t) & (abs(r_1_t) > _TOLERANCE * size) & (abs(-v_1_t) >
             _TOLERANCE * size))
         )
-        reached = reached & m.every((disc_1 >= 0.0))
+        reached = reached & m.every(leg, (disc_1 >= 0.0))
         sums = m.added(sums, leg, (
         spread_t_5,
         ))
@@ -4415,126 +4415,124 @@ _DEFAULT = Parameters()
 
 
 def _steps_M(m, X):
-    M_of_M, = m.run(_run_M, ("M",), X)
-    return (M_of_M,)
+    M, = m.run(_run_M, ("M",), X)
+    return (M,)
 
 
 def _steps_Z(m, X, V):
-    Z_of_Z, = m.run(_run_Z, ("Z",), X, V)
-    return (Z_of_Z,)
+    Z, = m.run(_run_Z, ("Z",), X, V)
+    return (Z,)
 
 
 def _steps_H(m, X):
-    H_of_H, = m.run(_run_H, ("H",), X)
-    return (H_of_H,)
+    H, = m.run(_run_H, ("H",), X)
+    return (H,)
 
 
 def _steps_inverse_kinematics(m, X):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
-    return (q_of_inverse_kinematics,)
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    return (q,)
 
 
 def _steps_joint_rates(m, X, V):
-    qd_of_joint_rates, = m.run(_run_joint_rates, ("qd",), X, V)
-    return (qd_of_joint_rates,)
+    qd, = m.run(_run_joint_rates, ("qd",), X, V)
+    return (qd,)
 
 
 def _steps_joint_accelerations(m, X, V, A):
-    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
-    return (qdd_of_joint_accelerations,)
+    qdd, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
+    return (qdd,)
 
 
 def _steps_dynamics(m, X, V):
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
-    return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
+    M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
+    return (M, Z, H,)
 
 
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
-    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
+    required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
-    subtract_2 = required_of_required - extend_1
-    solve_3 = _solve(H_of_required, subtract_2)
-    return (solve_3,)
+    subtract_2 = required - extend_1
+    tau = _solve(H, subtract_2)
+    return (tau,)
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
-    times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
+    M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
+    times_1 = np.einsum("ijs,js->is", H, tau)
     extend_2 = wrench
     add_3 = times_1 + extend_2
-    subtract_4 = add_3 - Z_of_dynamics
-    solve_5 = _solve(M_of_dynamics, subtract_4)
-    return (solve_5,)
+    subtract_4 = add_3 - Z
+    A = _solve(M, subtract_4)
+    return (A,)
 
 
 def _steps_complete_acceleration(m, X, V, A, wrench):
-    same_1 = A
-    return (same_1,)
+    completed = A
+    return (completed,)
 
 
 def _steps_leg_reactions(m, X, V, A, wrench):
-    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
+    required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
-    subtract_2 = required_of_required - extend_1
-    solve_3 = _solve(H_of_required, subtract_2)
-    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
-    add_forces_4 = _with_forces(leg_force_of_legs, solve_3, drive_of_legs, [0, 1, 2, 3, 4, 5])
-    return (add_forces_4,)
+    subtract_2 = required - extend_1
+    solve_3 = _solve(H, subtract_2)
+    leg_force, drive = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
+    forces = _with_forces(leg_force, solve_3, drive, [0, 1, 2, 3, 4, 5])
+    return (forces,)
 
 
 def _steps_energy(m, X, V):
-    M_of_M, = m.run(_run_M, ("M",), X)
+    M, = m.run(_run_M, ("M",), X)
     potential_of_potential, = m.run(_run_potential, ("potential",), X)
-    half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
-    entry_2 = potential_of_potential[0]
-    return (half_form_1, entry_2,)
+    kinetic = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M, V))
+    potential = potential_of_potential[0]
+    return (kinetic, potential,)
 
 
 def _steps_null_space(m, X):
-    H_of_H, = m.run(_run_H, ("H",), X)
-    null_basis_1 = _null_basis(H_of_H, 6)
-    return (null_basis_1,)
+    H, = m.run(_run_H, ("H",), X)
+    basis = _null_basis(H, 6)
+    return (basis,)
 
 
 def _steps_condition(m, X, length):
-    (
-    H_of_condition, lengths_of_condition, pivots_of_condition, reach_of_condition,
-    ) = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
-    choose_length_1 = _chosen_length(lengths_of_condition, length)
-    divide_rows_2 = _rows_divided(H_of_condition, choose_length_1, [3, 4, 5])
-    singular_values_3 = _singular_values(divide_rows_2)
-    return (singular_values_3, pivots_of_condition,)
+    H, lengths, legs, reach = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
+    choose_length_1 = _chosen_length(lengths, length)
+    divide_rows_2 = _rows_divided(H, choose_length_1, [3, 4, 5])
+    sigma = _singular_values(divide_rows_2)
+    return (sigma, legs,)
 
 
 def _steps_mismatch(m, X, q_actuated):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
-    take_1 = q_of_inverse_kinematics[[0, 3, 6, 9, 12, 15]]
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    take_1 = q[[0, 3, 6, 9, 12, 15]]
     subtract_2 = q_actuated - take_1
-    wrap_turns_3 = _wrapped(subtract_2, [0, 1, 2, 3, 4, 5])
-    return (wrap_turns_3,)
+    gap = _wrapped(subtract_2, [0, 1, 2, 3, 4, 5])
+    return (gap,)
 
 
 def _steps_slope(m, X):
-    H_of_H, = m.run(_run_H, ("H",), X)
-    return (H_of_H,)
+    slope, = m.run(_run_H, ("H",), X)
+    return (slope,)
 
 
 def _steps_forward_kinematics(m, q_actuated, X0):
-    X_found = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
-    return (X_found,)
+    X = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    return (X,)
 
 
 def _steps_rotation(m, X):
     take_1 = X[3:7]
-    rotation_of_quaternion_2 = _rotation_of_quaternion(take_1)
-    return (rotation_of_quaternion_2,)
+    R = _rotation_of_quaternion(take_1)
+    return (R,)
 
 
 def _steps_pose(m, t, R):
     quaternion_of_rotation_1 = _quaternion_of_rotation(R)
     join_2 = np.concatenate((t, quaternion_of_rotation_1))
-    extend_3 = join_2
-    return (extend_3,)
+    X = join_2
+    return (X,)
 
 
 def _steps_X_dot(m, X, V):
@@ -4542,15 +4540,15 @@ def _steps_X_dot(m, X, V):
     take_2 = X[3:7]
     quaternion_rate_3 = _quaternion_rate(take_2, take_1)
     take_4 = V[0:3]
-    join_5 = np.concatenate((take_4, quaternion_rate_3))
-    return (join_5,)
+    X_dot = np.concatenate((take_4, quaternion_rate_3))
+    return (X_dot,)
 
 
 def _steps_pose_from_rpy(m, t, rpy):
     quaternion_of_rpy_1 = _quaternion_of_rpy(rpy)
     join_2 = np.concatenate((t, quaternion_of_rpy_1))
-    extend_3 = join_2
-    return (extend_3,)
+    X = join_2
+    return (X,)
 
 
 def M(X, p=None):

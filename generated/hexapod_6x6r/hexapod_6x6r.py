@@ -1204,7 +1204,7 @@ class _Floats:
     cos = staticmethod(lambda x: float(np.cos(x)))
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
     least = staticmethod(lambda x, y: float(np.minimum(x, y)))
-    every = staticmethod(lambda good: good)
+    every = staticmethod(lambda leg, good: good)
 
     def __init__(self, p, states):
         self.p, self.states = p, states
@@ -1251,9 +1251,9 @@ class _Arrays:
     def zeros(self, name):
         return np.zeros((math.prod(_SHAPES[name]), self.states))
 
-    def every(self, good):
+    def every(self, legs, good):
         """Whether it holds for all legs."""
-        return np.logical_and.reduce(good, axis=0)
+        return np.logical_and.reduce(np.broadcast_to(good, (legs.stop, self.states)), axis=0)
 
     def added(self, sums, legs, terms):
         """Sums over the legs, all at once."""
@@ -3328,8 +3328,8 @@ def _run_dynamics(m, X, V, q):
         H_a_2_y = o_2_y_2 + q_in_base_z*w_2_in_base_x - q_in_base_x*w_2_in_base_z
         H_a_2_z = o_2_z + q_in_base_x*w_2_in_base_y - q_in_base_y*w_2_in_base_x
         ok = (
-        ok & m.every((abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE * size) &
-            (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
+        ok & m.every(leg, (abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE *
+            size) & (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
             (abs(w_1_t_82) > _TOLERANCE * size))
         )
         sums = m.added(sums, leg, (
@@ -4499,8 +4499,8 @@ def _run_M(m, X, q):
             q_in_base_x*(d_G_m1_in_base_y*n_m1_in_base_z + d_G_m2_in_base_y*n_m2_in_base_z)
         )
         ok = (
-        ok & m.every((abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE * size) &
-            (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
+        ok & m.every(leg, (abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE *
+            size) & (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
             (abs(w_1_t_82) > _TOLERANCE * size))
         )
         sums = m.added(sums, leg, (
@@ -5493,8 +5493,8 @@ def _run_Z(m, X, V, q):
             U_in_base_x*q_in_base_y
         )
         ok = (
-        ok & m.every((abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE * size) &
-            (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
+        ok & m.every(leg, (abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE *
+            size) & (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
             (abs(w_1_t_82) > _TOLERANCE * size))
         )
         sums = m.added(sums, leg, (
@@ -5908,8 +5908,8 @@ def _run_H(m, X, q):
         H_a_2_y = o_2_y + q_in_base_z*w_2_in_base_x - q_in_base_x*w_2_in_base_z
         H_a_2_z = o_2_z + q_in_base_x*w_2_in_base_y - q_in_base_y*w_2_in_base_x
         ok = (
-        ok & m.every((abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE * size) &
-            (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
+        ok & m.every(leg, (abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE *
+            size) & (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
             (abs(w_1_t_82) > _TOLERANCE * size))
         )
         out_H[_H_rrrrrr[0][leg]] = w_2_in_base_x
@@ -6927,8 +6927,8 @@ def _run_required(m, X, V, A, q):
             q_in_base_x*w_2_in_base_y - axis_x_rrrrrr_axes5_z*o_2_t - q_in_base_y*w_2_in_base_x
         )
         ok = (
-        ok & m.every((abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE * size) &
-            (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
+        ok & m.every(leg, (abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE *
+            size) & (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
             (abs(w_1_t_82) > _TOLERANCE * size))
         )
         sums = m.added(sums, leg, (
@@ -7396,8 +7396,8 @@ def _run_joint_rates(m, X, V, q):
             qd_1_t_2*w_1_t_17 - qd_1_t_3*w_1_t_28 - qd_1_t_5*w_1_t_21)
         )
         ok = (
-        ok & m.every((abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE * size) &
-            (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
+        ok & m.every(leg, (abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE *
+            size) & (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
             (abs(w_1_t_82) > _TOLERANCE * size))
         )
         out_qd[_qd_rrrrrr[0][leg]] = qd_1_t_5
@@ -8047,8 +8047,8 @@ def _run_joint_accelerations(m, X, V, A, q):
             rel_y*w_1_t_16 - qdd_1_t_4*w_1_t_25 - qdd_1_t_6*w_1_t_18)
         )
         ok = (
-        ok & m.every((abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE * size) &
-            (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
+        ok & m.every(leg, (abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE *
+            size) & (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
             (abs(w_1_t_82) > _TOLERANCE * size))
         )
         out_qdd[_qdd_rrrrrr[0][leg]] = -qdd_1_t_5
@@ -9003,8 +9003,8 @@ def _run_legs(m, X, V, A, q):
             axis_x_rrrrrr_axes5_z*o_2_t
         )
         ok = (
-        ok & m.every((abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE * size) &
-            (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
+        ok & m.every(leg, (abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE *
+            size) & (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
             (abs(w_1_t_82) > _TOLERANCE * size))
         )
         out_leg_force[_leg_force_rrrrrr[0][leg]] = c_true_in_base_x
@@ -9570,8 +9570,8 @@ def _run_condition(m, X, q):
             inv_size*pivot_size_3), inv_size*pivot_size_4), inv_size*pivot_size_5)
         )
         clear = (
-        clear & m.every((abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE * size)
-            & (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
+        clear & m.every(leg, (abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE *
+            size) & (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) &
             (abs(w_1_t_82) > _TOLERANCE * size))
         )
         sums = m.added(sums, leg, (
@@ -9849,140 +9849,138 @@ _DEFAULT = Parameters()
 
 def _steps_M(m, X, q0):
     q = _closed(m, X, q0)
-    M_of_M, = m.run(_run_M, ("M",), X, q)
-    return (M_of_M,)
+    M, = m.run(_run_M, ("M",), X, q)
+    return (M,)
 
 
 def _steps_Z(m, X, V, q0):
     q = _closed(m, X, q0)
-    Z_of_Z, = m.run(_run_Z, ("Z",), X, V, q)
-    return (Z_of_Z,)
+    Z, = m.run(_run_Z, ("Z",), X, V, q)
+    return (Z,)
 
 
 def _steps_H(m, X, q0):
     q = _closed(m, X, q0)
-    H_of_H, = m.run(_run_H, ("H",), X, q)
-    return (H_of_H,)
+    H, = m.run(_run_H, ("H",), X, q)
+    return (H,)
 
 
 def _steps_inverse_kinematics(m, X, q0):
     q = _closed(m, X, q0)
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), q)
-    return (q_of_inverse_kinematics,)
+    q, = m.run(_run_inverse_kinematics, ("q",), q)
+    return (q,)
 
 
 def _steps_joint_rates(m, X, V, q0):
     q = _closed(m, X, q0)
-    qd_of_joint_rates, = m.run(_run_joint_rates, ("qd",), X, V, q)
-    return (qd_of_joint_rates,)
+    qd, = m.run(_run_joint_rates, ("qd",), X, V, q)
+    return (qd,)
 
 
 def _steps_joint_accelerations(m, X, V, A, q0):
     q = _closed(m, X, q0)
-    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ("qdd",), X, V, A, q)
-    return (qdd_of_joint_accelerations,)
+    qdd, = m.run(_run_joint_accelerations, ("qdd",), X, V, A, q)
+    return (qdd,)
 
 
 def _steps_dynamics(m, X, V, q0):
     q = _closed(m, X, q0)
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V, q)
-    return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
+    M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V, q)
+    return (M, Z, H,)
 
 
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights, q0):
     q = _closed(m, X, q0)
-    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A, q)
+    required, H = m.run(_run_required, ("required", "H"), X, V, A, q)
     extend_1 = wrench
-    subtract_2 = required_of_required - extend_1
-    solve_3 = _solve(H_of_required, subtract_2)
-    return (solve_3,)
+    subtract_2 = required - extend_1
+    tau = _solve(H, subtract_2)
+    return (tau,)
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench, q0):
     q = _closed(m, X, q0)
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V, q)
-    times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
+    M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V, q)
+    times_1 = np.einsum("ijs,js->is", H, tau)
     extend_2 = wrench
     add_3 = times_1 + extend_2
-    subtract_4 = add_3 - Z_of_dynamics
-    solve_5 = _solve(M_of_dynamics, subtract_4)
-    return (solve_5,)
+    subtract_4 = add_3 - Z
+    A = _solve(M, subtract_4)
+    return (A,)
 
 
 def _steps_complete_acceleration(m, X, V, A, wrench, q0):
-    same_1 = A
-    return (same_1,)
+    completed = A
+    return (completed,)
 
 
 def _steps_leg_reactions(m, X, V, A, wrench, q0):
     q = _closed(m, X, q0)
-    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A, q)
+    required, H = m.run(_run_required, ("required", "H"), X, V, A, q)
     extend_1 = wrench
-    subtract_2 = required_of_required - extend_1
-    solve_3 = _solve(H_of_required, subtract_2)
-    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ("leg_force", "drive"), X, V, A, q)
-    add_forces_4 = _with_forces(leg_force_of_legs, solve_3, drive_of_legs, [0, 1, 2, 3, 4, 5])
-    return (add_forces_4,)
+    subtract_2 = required - extend_1
+    solve_3 = _solve(H, subtract_2)
+    leg_force, drive = m.run(_run_legs, ("leg_force", "drive"), X, V, A, q)
+    forces = _with_forces(leg_force, solve_3, drive, [0, 1, 2, 3, 4, 5])
+    return (forces,)
 
 
 def _steps_energy(m, X, V, q0):
     q = _closed(m, X, q0)
-    M_of_M, = m.run(_run_M, ("M",), X, q)
+    M, = m.run(_run_M, ("M",), X, q)
     potential_of_potential, = m.run(_run_potential, ("potential",), X, q)
-    half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
-    entry_2 = potential_of_potential[0]
-    return (half_form_1, entry_2,)
+    kinetic = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M, V))
+    potential = potential_of_potential[0]
+    return (kinetic, potential,)
 
 
 def _steps_null_space(m, X, q0):
     q = _closed(m, X, q0)
-    H_of_H, = m.run(_run_H, ("H",), X, q)
-    null_basis_1 = _null_basis(H_of_H, 6)
-    return (null_basis_1,)
+    H, = m.run(_run_H, ("H",), X, q)
+    basis = _null_basis(H, 6)
+    return (basis,)
 
 
 def _steps_condition(m, X, length, q0):
     q = _closed(m, X, q0)
-    (
-    H_of_condition, lengths_of_condition, pivots_of_condition, reach_of_condition,
-    ) = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X, q)
-    choose_length_1 = _chosen_length(lengths_of_condition, length)
-    divide_rows_2 = _rows_divided(H_of_condition, choose_length_1, [3, 4, 5])
-    singular_values_3 = _singular_values(divide_rows_2)
-    return (singular_values_3, pivots_of_condition,)
+    H, lengths, legs, reach = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X, q)
+    choose_length_1 = _chosen_length(lengths, length)
+    divide_rows_2 = _rows_divided(H, choose_length_1, [3, 4, 5])
+    sigma = _singular_values(divide_rows_2)
+    return (sigma, legs,)
 
 
 def _steps_mismatch(m, X, q_actuated, q0):
     q = _closed(m, X, q0)
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), q)
-    take_1 = q_of_inverse_kinematics[[1, 6, 11, 16, 21, 26]]
+    q, = m.run(_run_inverse_kinematics, ("q",), q)
+    take_1 = q[[1, 6, 11, 16, 21, 26]]
     subtract_2 = q_actuated - take_1
-    wrap_turns_3 = _wrapped(subtract_2, [0, 1, 2, 3, 4, 5])
-    return (wrap_turns_3,)
+    gap = _wrapped(subtract_2, [0, 1, 2, 3, 4, 5])
+    return (gap,)
 
 
 def _steps_slope(m, X, q0):
     q = _closed(m, X, q0)
-    H_of_H, = m.run(_run_H, ("H",), X, q)
-    return (H_of_H,)
+    slope, = m.run(_run_H, ("H",), X, q)
+    return (slope,)
 
 
 def _steps_forward_kinematics(m, q_actuated, X0, q0):
-    X_found = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated, q0,), (q0,), True)
-    return (X_found,)
+    X = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated, q0,), (q0,), True)
+    return (X,)
 
 
 def _steps_rotation(m, X):
     take_1 = X[3:7]
-    rotation_of_quaternion_2 = _rotation_of_quaternion(take_1)
-    return (rotation_of_quaternion_2,)
+    R = _rotation_of_quaternion(take_1)
+    return (R,)
 
 
 def _steps_pose(m, t, R):
     quaternion_of_rotation_1 = _quaternion_of_rotation(R)
     join_2 = np.concatenate((t, quaternion_of_rotation_1))
-    extend_3 = join_2
-    return (extend_3,)
+    X = join_2
+    return (X,)
 
 
 def _steps_X_dot(m, X, V):
@@ -9990,15 +9988,15 @@ def _steps_X_dot(m, X, V):
     take_2 = X[3:7]
     quaternion_rate_3 = _quaternion_rate(take_2, take_1)
     take_4 = V[0:3]
-    join_5 = np.concatenate((take_4, quaternion_rate_3))
-    return (join_5,)
+    X_dot = np.concatenate((take_4, quaternion_rate_3))
+    return (X_dot,)
 
 
 def _steps_pose_from_rpy(m, t, rpy):
     quaternion_of_rpy_1 = _quaternion_of_rpy(rpy)
     join_2 = np.concatenate((t, quaternion_of_rpy_1))
-    extend_3 = join_2
-    return (extend_3,)
+    X = join_2
+    return (X,)
 
 
 def M(X, p=None, *, q0=None):

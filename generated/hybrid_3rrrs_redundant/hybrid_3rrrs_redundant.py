@@ -1535,7 +1535,7 @@ class _Floats:
     cos = staticmethod(lambda x: float(np.cos(x)))
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
     least = staticmethod(lambda x, y: float(np.minimum(x, y)))
-    every = staticmethod(lambda good: good)
+    every = staticmethod(lambda leg, good: good)
 
     def __init__(self, p, states):
         self.p, self.states = p, states
@@ -1582,9 +1582,9 @@ class _Arrays:
     def zeros(self, name):
         return np.zeros((math.prod(_SHAPES[name]), self.states))
 
-    def every(self, good):
+    def every(self, legs, good):
         """Whether it holds for all legs."""
-        return np.logical_and.reduce(good, axis=0)
+        return np.logical_and.reduce(np.broadcast_to(good, (legs.stop, self.states)), axis=0)
 
     def added(self, sums, legs, terms):
         """Sums over the legs, all at once."""
@@ -2777,7 +2777,7 @@ def _run_dynamics(m, X, V):
         H_a_3_rrrrs_y = q_rrrrs_in_base_x*w_3_rrrrs_t_3 - q_rrrrs_in_base_z*w_3_rrrrs_t
         H_a_3_rrrrs_z = q_rrrrs_in_base_y*w_3_rrrrs_t - q_rrrrs_in_base_x*w_3_rrrrs_t_2
         ok = (
-        ok & m.every((abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) &
+        ok & m.every(leg, (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) &
             (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0)
             & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE *
             size_rrrrs))
@@ -3293,7 +3293,7 @@ def _run_dynamics(m, X, V):
         H_a_2_rrrs_y = q_rrrs_in_base_x*w_2_rrrs_t_3 - q_rrrs_in_base_z*w_2_rrrs_t
         H_a_2_rrrs_z = q_rrrs_in_base_y*w_2_rrrs_t - q_rrrs_in_base_x*w_2_rrrs_t_2
         ok = (
-        ok & m.every((abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) &
+        ok & m.every(leg, (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) &
             (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0) &
             (abs(v_1_rrrs_z) > _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE *
             size_rrrs))
@@ -3840,7 +3840,7 @@ def _run_M(m, X):
         )
         d1_P_2_rrrrs = d1_Gamma_2_rrrrs + d1_P_2_rrrrs_t
         ok = (
-        ok & m.every((abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) &
+        ok & m.every(leg, (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) &
             (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0)
             & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE *
             size_rrrrs))
@@ -4111,7 +4111,7 @@ def _run_M(m, X):
         M_aa_t_11 = M_ta_t_17*q_rrrs_in_base_z - M_ta_t_24*q_rrrs_in_base_x
         M_aa_t_12 = M_ta_t_17*q_rrrs_in_base_y - M_ta_t_21*q_rrrs_in_base_x
         ok = (
-        ok & m.every((abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) &
+        ok & m.every(leg, (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) &
             (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0) &
             (abs(v_1_rrrs_z) > _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE *
             size_rrrs))
@@ -4761,7 +4761,7 @@ def _run_Z(m, X, V):
         P_2_rrrrs_o_t = G_rrrrs_o_t_2*r_2_rrrrs_r1_y - G_rrrrs_o_t*r_2_rrrrs_r1_x
         P_2_rrrrs_o = N_2_rrrrs_o_z + P_2_rrrrs_o_t
         ok = (
-        ok & m.every((abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) &
+        ok & m.every(leg, (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) &
             (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0)
             & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE *
             size_rrrrs))
@@ -5112,7 +5112,7 @@ def _run_Z(m, X, V):
         Z_a_t_5 = U_rrrs_in_base_x*q_rrrs_in_base_z - U_rrrs_in_base_z*q_rrrs_in_base_x
         Z_a_t_6 = U_rrrs_in_base_y*q_rrrs_in_base_x - U_rrrs_in_base_x*q_rrrs_in_base_y
         ok = (
-        ok & m.every((abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) &
+        ok & m.every(leg, (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) &
             (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0) &
             (abs(v_1_rrrs_z) > _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE *
             size_rrrs))
@@ -5354,7 +5354,7 @@ def _run_H(m, X):
         H_a_3_rrrrs_y = q_rrrrs_in_base_x*w_3_rrrrs_t_3 - q_rrrrs_in_base_z*w_3_rrrrs_t
         H_a_3_rrrrs_z = q_rrrrs_in_base_y*w_3_rrrrs_t - q_rrrrs_in_base_x*w_3_rrrrs_t_2
         ok = (
-        ok & m.every((abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) &
+        ok & m.every(leg, (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) &
             (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0)
             & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE *
             size_rrrrs))
@@ -5507,7 +5507,7 @@ def _run_H(m, X):
         H_a_2_rrrs_y = q_rrrs_in_base_x*w_2_rrrs_t_3 - q_rrrs_in_base_z*w_2_rrrs_t
         H_a_2_rrrs_z = q_rrrs_in_base_y*w_2_rrrs_t - q_rrrs_in_base_x*w_2_rrrs_t_2
         ok = (
-        ok & m.every((abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) &
+        ok & m.every(leg, (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) &
             (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0) &
             (abs(v_1_rrrs_z) > _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE *
             size_rrrs))
@@ -6170,7 +6170,7 @@ def _run_required(m, X, V, A):
         P_2_rrrrs_t = G_rrrrs_t_2*r_2_rrrrs_r1_y - G_rrrrs_t*r_2_rrrrs_r1_x
         P_2_rrrrs = N_2_rrrrs_z + P_2_rrrrs_t
         ok = (
-        ok & m.every((abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) &
+        ok & m.every(leg, (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) &
             (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0)
             & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE *
             size_rrrrs))
@@ -6562,7 +6562,7 @@ def _run_required(m, X, V, A):
         R_a_t_5 = c_rrrs_in_base_x*q_rrrs_in_base_z - c_rrrs_in_base_z*q_rrrs_in_base_x
         R_a_t_6 = c_rrrs_in_base_y*q_rrrs_in_base_x - c_rrrs_in_base_x*q_rrrs_in_base_y
         ok = (
-        ok & m.every((abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) &
+        ok & m.every(leg, (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) &
             (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0) &
             (abs(v_1_rrrs_z) > _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE *
             size_rrrs))
@@ -6733,7 +6733,7 @@ def _run_inverse_kinematics(m, X):
             inv_size_rrrrs_t_3*rrrrs_platform_joint_offset_x*x_4_rrrrs_x)
         )
         ok = (
-        ok & m.every((abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) &
+        ok & m.every(leg, (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) &
             (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >=
             0.0))
         )
@@ -6816,7 +6816,7 @@ def _run_inverse_kinematics(m, X):
             inv_size_rrrs_t_2*rrrs_platform_joint_offset_x*x_3_rrrs_x)
         )
         ok = (
-        ok & m.every((abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) &
+        ok & m.every(leg, (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) &
             (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0))
         )
         out_q[_q_rrrs[0][leg]] = q_1_rrrs
@@ -7072,7 +7072,7 @@ def _run_joint_rates(m, X, V):
             S_dot_rest_rrrrs_z*axis_z_rrrrs_axes4_in_base_z)/v_1_rrrrs_z
         )
         ok = (
-        ok & m.every((abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) &
+        ok & m.every(leg, (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) &
             (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0)
             & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE *
             size_rrrrs))
@@ -7211,7 +7211,7 @@ def _run_joint_rates(m, X, V):
             S_dot_rrrs_z*axis_z_rrrs_axes3_in_base_z)/v_1_rrrs_z
         )
         ok = (
-        ok & m.every((abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) &
+        ok & m.every(leg, (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) &
             (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0) &
             (abs(v_1_rrrs_z) > _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE *
             size_rrrs))
@@ -7582,7 +7582,7 @@ def _run_joint_accelerations(m, X, V, A):
         qdd_4_rrrrs = inv_rrrrs_platform_joint_offset_x*(rel_rrrrs_y + qdd_3_rrrrs*r_3_rrrrs_r0_x)
         qdd_1_rrrrs = inv_v_1_rrrrs_z*rel_rrrrs_z
         ok = (
-        ok & m.every((abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) &
+        ok & m.every(leg, (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) &
             (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0)
             & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE *
             size_rrrrs))
@@ -7805,7 +7805,7 @@ def _run_joint_accelerations(m, X, V, A):
         qdd_3_rrrs = inv_rrrs_platform_joint_offset_x*(rel_rrrs_y + qdd_2_rrrs*r_2_rrrs_r0_x)
         qdd_1_rrrs = inv_v_1_rrrs_z*rel_rrrs_z
         ok = (
-        ok & m.every((abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) &
+        ok & m.every(leg, (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) &
             (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0) &
             (abs(v_1_rrrs_z) > _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE *
             size_rrrs))
@@ -8365,7 +8365,7 @@ def _run_legs(m, X, V, A):
             axis_z_rrrrs_axes4_in_base_z*c_true_rrrrs_z
         )
         ok = (
-        ok & m.every((abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) &
+        ok & m.every(leg, (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) &
             (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0)
             & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE *
             size_rrrrs))
@@ -8736,7 +8736,7 @@ def _run_legs(m, X, V, A):
             axis_z_rrrs_axes3_in_base_z*c_true_rrrs_z
         )
         ok = (
-        ok & m.every((abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) &
+        ok & m.every(leg, (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) &
             (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0) &
             (abs(v_1_rrrs_z) > _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE *
             size_rrrs))
@@ -8923,7 +8923,7 @@ def _run_potential(m, X):
             b_rrrrs_r1_x*rrrrs_link3_mass)
         )
         ok = (
-        ok & m.every((abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) &
+        ok & m.every(leg, (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) &
             (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >=
             0.0))
         )
@@ -9025,7 +9025,7 @@ def _run_potential(m, X):
             b_rrrs_r1_x*rrrs_link1_mass + b_rrrs_r1_x*rrrs_link2_mass)
         )
         ok = (
-        ok & m.every((abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) &
+        ok & m.every(leg, (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) &
             (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0))
         )
         sums = m.added(sums, leg, (
@@ -9279,11 +9279,11 @@ def _run_condition(m, X):
             inv_size_rrrrs*pivot_size_4), sqrt(inv_size_rrrrs_t_4*pivot_size))
         )
         clear = (
-        clear & m.every((abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) &
+        clear & m.every(leg, (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) &
             (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (abs(v_1_rrrrs_z) >
             _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE * size_rrrrs))
         )
-        reached = reached & m.every((disc_3_rrrrs >= 0.0))
+        reached = reached & m.every(leg, (disc_3_rrrrs >= 0.0))
         sums = m.added(sums, leg, (
         spread_t_4,
         ))
@@ -9457,11 +9457,11 @@ def _run_condition(m, X):
             inv_size_rrrs*pivot_size_8), sqrt(inv_size_rrrs_t_3*pivot_size_5))
         )
         clear = (
-        clear & m.every((abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) &
+        clear & m.every(leg, (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) &
             (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (abs(v_1_rrrs_z) >
             _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE * size_rrrs))
         )
-        reached = reached & m.every((disc_2_rrrs >= 0.0))
+        reached = reached & m.every(leg, (disc_2_rrrs >= 0.0))
         sums = m.added(sums, leg, (
         spread_t_8,
         ))
@@ -9491,126 +9491,124 @@ _DEFAULT = Parameters()
 
 
 def _steps_M(m, X):
-    M_of_M, = m.run(_run_M, ("M",), X)
-    return (M_of_M,)
+    M, = m.run(_run_M, ("M",), X)
+    return (M,)
 
 
 def _steps_Z(m, X, V):
-    Z_of_Z, = m.run(_run_Z, ("Z",), X, V)
-    return (Z_of_Z,)
+    Z, = m.run(_run_Z, ("Z",), X, V)
+    return (Z,)
 
 
 def _steps_H(m, X):
-    H_of_H, = m.run(_run_H, ("H",), X)
-    return (H_of_H,)
+    H, = m.run(_run_H, ("H",), X)
+    return (H,)
 
 
 def _steps_inverse_kinematics(m, X):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
-    return (q_of_inverse_kinematics,)
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    return (q,)
 
 
 def _steps_joint_rates(m, X, V):
-    qd_of_joint_rates, = m.run(_run_joint_rates, ("qd",), X, V)
-    return (qd_of_joint_rates,)
+    qd, = m.run(_run_joint_rates, ("qd",), X, V)
+    return (qd,)
 
 
 def _steps_joint_accelerations(m, X, V, A):
-    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
-    return (qdd_of_joint_accelerations,)
+    qdd, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
+    return (qdd,)
 
 
 def _steps_dynamics(m, X, V):
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
-    return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
+    M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
+    return (M, Z, H,)
 
 
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
-    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
+    required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = _extended(wrench, 7)
-    subtract_2 = required_of_required - extend_1
-    solve_3 = _solve(H_of_required, subtract_2)
-    return (solve_3,)
+    subtract_2 = required - extend_1
+    tau = _solve(H, subtract_2)
+    return (tau,)
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
-    times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
+    M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
+    times_1 = np.einsum("ijs,js->is", H, tau)
     extend_2 = _extended(wrench, 7)
     add_3 = times_1 + extend_2
-    subtract_4 = add_3 - Z_of_dynamics
-    solve_5 = _solve(M_of_dynamics, subtract_4)
-    return (solve_5,)
+    subtract_4 = add_3 - Z
+    A = _solve(M, subtract_4)
+    return (A,)
 
 
 def _steps_complete_acceleration(m, X, V, A, wrench):
-    same_1 = A
-    return (same_1,)
+    completed = A
+    return (completed,)
 
 
 def _steps_leg_reactions(m, X, V, A, wrench):
-    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
+    required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = _extended(wrench, 7)
-    subtract_2 = required_of_required - extend_1
-    solve_3 = _solve(H_of_required, subtract_2)
-    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
-    add_forces_4 = _with_forces(leg_force_of_legs, solve_3, drive_of_legs, [0, 0, 0, 1, 1, 2, 2])
-    return (add_forces_4,)
+    subtract_2 = required - extend_1
+    solve_3 = _solve(H, subtract_2)
+    leg_force, drive = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
+    forces = _with_forces(leg_force, solve_3, drive, [0, 0, 0, 1, 1, 2, 2])
+    return (forces,)
 
 
 def _steps_energy(m, X, V):
-    M_of_M, = m.run(_run_M, ("M",), X)
+    M, = m.run(_run_M, ("M",), X)
     potential_of_potential, = m.run(_run_potential, ("potential",), X)
-    half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
-    entry_2 = potential_of_potential[0]
-    return (half_form_1, entry_2,)
+    kinetic = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M, V))
+    potential = potential_of_potential[0]
+    return (kinetic, potential,)
 
 
 def _steps_null_space(m, X):
-    H_of_H, = m.run(_run_H, ("H",), X)
-    null_basis_1 = _null_basis(H_of_H, 7)
-    return (null_basis_1,)
+    H, = m.run(_run_H, ("H",), X)
+    basis = _null_basis(H, 7)
+    return (basis,)
 
 
 def _steps_condition(m, X, length):
-    (
-    H_of_condition, lengths_of_condition, pivots_of_condition, reach_of_condition,
-    ) = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
-    choose_length_1 = _chosen_length(lengths_of_condition, length)
-    divide_rows_2 = _rows_divided(H_of_condition, choose_length_1, [3, 4, 5, 6])
-    singular_values_3 = _singular_values(divide_rows_2)
-    return (singular_values_3, pivots_of_condition,)
+    H, lengths, legs, reach = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
+    choose_length_1 = _chosen_length(lengths, length)
+    divide_rows_2 = _rows_divided(H, choose_length_1, [3, 4, 5, 6])
+    sigma = _singular_values(divide_rows_2)
+    return (sigma, legs,)
 
 
 def _steps_mismatch(m, X, q_actuated):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
-    take_1 = q_of_inverse_kinematics[[0, 1, 2, 4, 5, 7, 8]]
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    take_1 = q[[0, 1, 2, 4, 5, 7, 8]]
     subtract_2 = q_actuated - take_1
-    wrap_turns_3 = _wrapped(subtract_2, [0, 1, 2, 3, 4, 5, 6])
-    return (wrap_turns_3,)
+    gap = _wrapped(subtract_2, [0, 1, 2, 3, 4, 5, 6])
+    return (gap,)
 
 
 def _steps_slope(m, X):
-    H_of_H, = m.run(_run_H, ("H",), X)
-    return (H_of_H,)
+    slope, = m.run(_run_H, ("H",), X)
+    return (slope,)
 
 
 def _steps_forward_kinematics(m, q_actuated, X0):
-    X_found = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
-    return (X_found,)
+    X = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    return (X,)
 
 
 def _steps_rotation(m, X):
     take_1 = X[3:7]
-    rotation_of_quaternion_2 = _rotation_of_quaternion(take_1)
-    return (rotation_of_quaternion_2,)
+    R = _rotation_of_quaternion(take_1)
+    return (R,)
 
 
 def _steps_pose(m, t, R):
     quaternion_of_rotation_1 = _quaternion_of_rotation(R)
     join_2 = np.concatenate((t, quaternion_of_rotation_1))
-    extend_3 = _extended(join_2, 8)
-    return (extend_3,)
+    X = _extended(join_2, 8)
+    return (X,)
 
 
 def _steps_X_dot(m, X, V):
@@ -9620,15 +9618,15 @@ def _steps_X_dot(m, X, V):
     take_4 = V[0:3]
     join_5 = np.concatenate((take_4, quaternion_rate_3))
     take_6 = V[6:7]
-    join_7 = np.concatenate((join_5, take_6))
-    return (join_7,)
+    X_dot = np.concatenate((join_5, take_6))
+    return (X_dot,)
 
 
 def _steps_pose_from_rpy(m, t, rpy):
     quaternion_of_rpy_1 = _quaternion_of_rpy(rpy)
     join_2 = np.concatenate((t, quaternion_of_rpy_1))
-    extend_3 = _extended(join_2, 8)
-    return (extend_3,)
+    X = _extended(join_2, 8)
+    return (X,)
 
 
 def M(X, p=None):

@@ -673,7 +673,7 @@ class _Floats:
     cos = staticmethod(lambda x: float(np.cos(x)))
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
     least = staticmethod(lambda x, y: float(np.minimum(x, y)))
-    every = staticmethod(lambda good: good)
+    every = staticmethod(lambda leg, good: good)
 
     def __init__(self, p, states):
         self.p, self.states = p, states
@@ -720,9 +720,9 @@ class _Arrays:
     def zeros(self, name):
         return np.zeros((math.prod(_SHAPES[name]), self.states))
 
-    def every(self, good):
+    def every(self, legs, good):
         """Whether it holds for all legs."""
-        return np.logical_and.reduce(good, axis=0)
+        return np.logical_and.reduce(np.broadcast_to(good, (legs.stop, self.states)), axis=0)
 
     def added(self, sums, legs, terms):
         """Sums over the legs, all at once."""
@@ -1200,7 +1200,7 @@ def _run_dynamics(m, X, V):
         w_1_in_base_y = _r0_y*axis_y_prr_axes2_in_base_y - _r0_x*axis_y_prr_axes2_in_base_x
         # (M8) moment of the column's unit force about the platform origin
         H_a_1_z = q_in_base_x*w_1_in_base_y - q_in_base_y*w_1_in_base_x
-        ok = ok & m.every((disc_1 >= 0.0) & (abs(-v_2_t_2) > _TOLERANCE * size))
+        ok = ok & m.every(leg, (disc_1 >= 0.0) & (abs(-v_2_t_2) > _TOLERANCE * size))
         sums = m.added(sums, leg, (
         Q_t_5, Q_t_6, Q_t_7, M_ta_t, M_ta_t_2, M_aa_t, U_in_base_x, U_in_base_y, Z_a_t,
         ))
@@ -1319,7 +1319,7 @@ def _run_M(m, X):
         M_ta_t_2 = Q_t_6*q_in_base_y - Q_t_7*q_in_base_x
         # (M3) rotational block of M
         M_aa_t = M_ta_t*q_in_base_y - M_ta_t_2*q_in_base_x
-        ok = ok & m.every((disc_1 >= 0.0) & (abs(-v_2_t_2) > _TOLERANCE * size))
+        ok = ok & m.every(leg, (disc_1 >= 0.0) & (abs(-v_2_t_2) > _TOLERANCE * size))
         sums = m.added(sums, leg, (
         Q_t_5, Q_t_6, Q_t_7, M_ta_t, M_ta_t_2, M_aa_t,
         ))
@@ -1446,7 +1446,7 @@ def _run_Z(m, X, V):
         U_in_base_y = axis_y_prr_axes2_in_base_x*c_o_x - axis_y_prr_axes2_in_base_y*c_o_y
         # (M7) rotational part of Z
         Z_a_t = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
-        ok = ok & m.every((disc_1 >= 0.0) & (abs(-v_2_t_2) > _TOLERANCE * size))
+        ok = ok & m.every(leg, (disc_1 >= 0.0) & (abs(-v_2_t_2) > _TOLERANCE * size))
         sums = m.added(sums, leg, (
         U_in_base_x, U_in_base_y, Z_a_t,
         ))
@@ -1513,7 +1513,7 @@ def _run_H(m, X):
         w_1_in_base_y = _r0_y*axis_y_prr_axes2_in_base_y - _r0_x*axis_y_prr_axes2_in_base_x
         # (M8) moment of the column's unit force about the platform origin
         H_a_1_z = q_in_base_x*w_1_in_base_y - q_in_base_y*w_1_in_base_x
-        ok = ok & m.every((disc_1 >= 0.0) & (abs(-v_2_t) > _TOLERANCE * size))
+        ok = ok & m.every(leg, (disc_1 >= 0.0) & (abs(-v_2_t) > _TOLERANCE * size))
         out_H[_H_prr[0][leg]] = w_1_in_base_x
         out_H[_H_prr[1][leg]] = w_1_in_base_y
         out_H[_H_prr[2][leg]] = H_a_1_z
@@ -1646,7 +1646,7 @@ def _run_required(m, X, V, A):
         c_in_base_y = axis_y_prr_axes2_in_base_y*c_y - axis_y_prr_axes2_in_base_x*c_x
         # (E5) moment that actuators and external wrench must give
         R_a_t = c_in_base_y*q_in_base_x - c_in_base_x*q_in_base_y
-        ok = ok & m.every((disc_1 >= 0.0) & (abs(-v_2_t_2) > _TOLERANCE * size))
+        ok = ok & m.every(leg, (disc_1 >= 0.0) & (abs(-v_2_t_2) > _TOLERANCE * size))
         sums = m.added(sums, leg, (
         c_in_base_x, c_in_base_y, R_a_t,
         ))
@@ -1704,7 +1704,7 @@ def _run_inverse_kinematics(m, X):
         atan2(inv_uu_2_t*prr_platform_joint_offset_x*(S_x*prr_base_frame_xy +
             S_y*prr_base_frame_yy), -inv_uu_2_t*prr_platform_joint_offset_x*q_1_t)
         )
-        ok = ok & m.every((disc_1 >= 0.0))
+        ok = ok & m.every(leg, (disc_1 >= 0.0))
         out_q[_q_prr[0][leg]] = q_1
         out_q[_q_prr[1][leg]] = q_2
     return ok, (out_q,)
@@ -1763,7 +1763,7 @@ def _run_joint_rates(m, X, V):
             inv_uu_2_t*prr_platform_joint_offset_x*prr_platform_joint_offset_x*qd_2*(S_x*prr_base_frame_xy
             + S_y*prr_base_frame_yy)
         )
-        ok = ok & m.every((disc_1 >= 0.0) & (abs(-v_2_t) > _TOLERANCE * size))
+        ok = ok & m.every(leg, (disc_1 >= 0.0) & (abs(-v_2_t) > _TOLERANCE * size))
         out_qd[_qd_prr[0][leg]] = qd_2_t
         out_qd[_qd_prr[1][leg]] = -qd_2
     return ok, (out_qd,)
@@ -1850,7 +1850,7 @@ def _run_joint_accelerations(m, X, V, A):
         # (prr-A7) acceleration of joint 1
         qdd_2 = inv_v_2_t_2*(rel_x*s_2 - S_ddot_tip_y*c_2)
         qdd_1_t = S_ddot_tip_y*s_2 + c_2*rel_x + prr_platform_joint_offset_x*qdd_2*s_2
-        ok = ok & m.every((disc_1 >= 0.0) & (abs(-v_2_t) > _TOLERANCE * size))
+        ok = ok & m.every(leg, (disc_1 >= 0.0) & (abs(-v_2_t) > _TOLERANCE * size))
         out_qdd[_qdd_prr[0][leg]] = -qdd_1_t
         out_qdd[_qdd_prr[1][leg]] = -qdd_2
     return ok, (out_qdd,)
@@ -1968,7 +1968,7 @@ def _run_legs(m, X, V, A):
         c_true_in_base_y = (
         axis_y_prr_axes2_in_base_y*c_true_y - axis_y_prr_axes2_in_base_x*c_true_x
         )
-        ok = ok & m.every((disc_1 >= 0.0) & (abs(-v_2_t_2) > _TOLERANCE * size))
+        ok = ok & m.every(leg, (disc_1 >= 0.0) & (abs(-v_2_t_2) > _TOLERANCE * size))
         out_leg_force[_leg_force_prr[0][leg]] = c_true_in_base_x
         out_leg_force[_leg_force_prr[1][leg]] = c_true_in_base_y
         out_drive[_drive_prr[0][leg]] = w_1_in_base_x
@@ -2028,7 +2028,7 @@ def _run_potential(m, X):
         g_r0_x*(h_1_x + prr_link1_mass*(b_r0_x + q_1) - c_2*h_2_x - h_2_y*s_2) + g_r0_y*(h_1_y +
             potential_t + h_2_x*s_2 - c_2*h_2_y)
         )
-        ok = ok & m.every((disc_1 >= 0.0))
+        ok = ok & m.every(leg, (disc_1 >= 0.0))
         sums = m.added(sums, leg, (
         potential_t_3,
         ))
@@ -2105,8 +2105,8 @@ def _run_condition(m, X):
         # (prr-V3) reciprocal vector 1
         pivot_size = abs(v_2_t)
         pivot = inv_size*pivot_size
-        reached = reached & m.every((disc_1 >= 0.0))
-        clear = clear & m.every((abs(-v_2_t) > _TOLERANCE * size))
+        reached = reached & m.every(leg, (disc_1 >= 0.0))
+        clear = clear & m.every(leg, (abs(-v_2_t) > _TOLERANCE * size))
         sums = m.added(sums, leg, (
         spread_t_4,
         ))
@@ -2127,130 +2127,128 @@ _DEFAULT = Parameters()
 
 
 def _steps_M(m, X):
-    M_of_M, = m.run(_run_M, ("M",), X)
-    return (M_of_M,)
+    M, = m.run(_run_M, ("M",), X)
+    return (M,)
 
 
 def _steps_Z(m, X, V):
-    Z_of_Z, = m.run(_run_Z, ("Z",), X, V)
-    return (Z_of_Z,)
+    Z, = m.run(_run_Z, ("Z",), X, V)
+    return (Z,)
 
 
 def _steps_H(m, X):
-    H_of_H, = m.run(_run_H, ("H",), X)
-    return (H_of_H,)
+    H, = m.run(_run_H, ("H",), X)
+    return (H,)
 
 
 def _steps_inverse_kinematics(m, X):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
-    return (q_of_inverse_kinematics,)
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    return (q,)
 
 
 def _steps_joint_rates(m, X, V):
-    qd_of_joint_rates, = m.run(_run_joint_rates, ("qd",), X, V)
-    return (qd_of_joint_rates,)
+    qd, = m.run(_run_joint_rates, ("qd",), X, V)
+    return (qd,)
 
 
 def _steps_joint_accelerations(m, X, V, A):
-    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
-    return (qdd_of_joint_accelerations,)
+    qdd, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
+    return (qdd,)
 
 
 def _steps_dynamics(m, X, V):
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
-    return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
+    M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
+    return (M, Z, H,)
 
 
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
-    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
+    required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
-    subtract_2 = required_of_required - extend_1
-    solve_3 = _solve(H_of_required, subtract_2)
-    return (solve_3,)
+    subtract_2 = required - extend_1
+    tau = _solve(H, subtract_2)
+    return (tau,)
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
-    times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
+    M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
+    times_1 = np.einsum("ijs,js->is", H, tau)
     extend_2 = wrench
     add_3 = times_1 + extend_2
-    subtract_4 = add_3 - Z_of_dynamics
-    solve_5 = _solve(M_of_dynamics, subtract_4)
-    return (solve_5,)
+    subtract_4 = add_3 - Z
+    A = _solve(M, subtract_4)
+    return (A,)
 
 
 def _steps_complete_acceleration(m, X, V, A, wrench):
-    same_1 = A
-    return (same_1,)
+    completed = A
+    return (completed,)
 
 
 def _steps_leg_reactions(m, X, V, A, wrench):
-    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
+    required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
-    subtract_2 = required_of_required - extend_1
-    solve_3 = _solve(H_of_required, subtract_2)
-    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
-    add_forces_4 = _with_forces(leg_force_of_legs, solve_3, drive_of_legs, [0, 1, 2])
-    return (add_forces_4,)
+    subtract_2 = required - extend_1
+    solve_3 = _solve(H, subtract_2)
+    leg_force, drive = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
+    forces = _with_forces(leg_force, solve_3, drive, [0, 1, 2])
+    return (forces,)
 
 
 def _steps_energy(m, X, V):
-    M_of_M, = m.run(_run_M, ("M",), X)
+    M, = m.run(_run_M, ("M",), X)
     potential_of_potential, = m.run(_run_potential, ("potential",), X)
-    half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
-    entry_2 = potential_of_potential[0]
-    return (half_form_1, entry_2,)
+    kinetic = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M, V))
+    potential = potential_of_potential[0]
+    return (kinetic, potential,)
 
 
 def _steps_null_space(m, X):
-    H_of_H, = m.run(_run_H, ("H",), X)
-    null_basis_1 = _null_basis(H_of_H, 3)
-    return (null_basis_1,)
+    H, = m.run(_run_H, ("H",), X)
+    basis = _null_basis(H, 3)
+    return (basis,)
 
 
 def _steps_condition(m, X, length):
-    (
-    H_of_condition, lengths_of_condition, pivots_of_condition, reach_of_condition,
-    ) = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
-    choose_length_1 = _chosen_length(lengths_of_condition, length)
-    divide_rows_2 = _rows_divided(H_of_condition, choose_length_1, [2])
-    singular_values_3 = _singular_values(divide_rows_2)
-    return (singular_values_3, pivots_of_condition,)
+    H, lengths, legs, reach = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
+    choose_length_1 = _chosen_length(lengths, length)
+    divide_rows_2 = _rows_divided(H, choose_length_1, [2])
+    sigma = _singular_values(divide_rows_2)
+    return (sigma, legs,)
 
 
 def _steps_mismatch(m, X, q_actuated):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
-    take_1 = q_of_inverse_kinematics[[0, 2, 4]]
-    subtract_2 = q_actuated - take_1
-    return (subtract_2,)
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    take_1 = q[[0, 2, 4]]
+    gap = q_actuated - take_1
+    return (gap,)
 
 
 def _steps_slope(m, X):
-    H_of_H, = m.run(_run_H, ("H",), X)
-    return (H_of_H,)
+    slope, = m.run(_run_H, ("H",), X)
+    return (slope,)
 
 
 def _steps_forward_kinematics(m, q_actuated, X0):
-    X_found = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
-    return (X_found,)
+    X = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    return (X,)
 
 
 def _steps_rotation(m, X):
     take_1 = X[2:3]
-    rotation_of_angle_2 = _rotation_of_angle(take_1)
-    return (rotation_of_angle_2,)
+    R = _rotation_of_angle(take_1)
+    return (R,)
 
 
 def _steps_pose(m, t, R):
     angle_of_rotation_1 = _angle_of_rotation(R)
     join_2 = np.concatenate((t, angle_of_rotation_1))
-    extend_3 = join_2
-    return (extend_3,)
+    X = join_2
+    return (X,)
 
 
 def _steps_X_dot(m, X, V):
-    same_1 = V
-    return (same_1,)
+    X_dot = V
+    return (X_dot,)
 
 
 def M(X, p=None):

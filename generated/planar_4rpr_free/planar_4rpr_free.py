@@ -830,7 +830,7 @@ class _Floats:
     cos = staticmethod(lambda x: float(np.cos(x)))
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
     least = staticmethod(lambda x, y: float(np.minimum(x, y)))
-    every = staticmethod(lambda good: good)
+    every = staticmethod(lambda leg, good: good)
 
     def __init__(self, p, states):
         self.p, self.states = p, states
@@ -877,9 +877,9 @@ class _Arrays:
     def zeros(self, name):
         return np.zeros((math.prod(_SHAPES[name]), self.states))
 
-    def every(self, good):
+    def every(self, legs, good):
         """Whether it holds for all legs."""
-        return np.logical_and.reduce(good, axis=0)
+        return np.logical_and.reduce(np.broadcast_to(good, (legs.stop, self.states)), axis=0)
 
     def added(self, sums, legs, terms):
         """Sums over the legs, all at once."""
@@ -1335,8 +1335,8 @@ def _run_dynamics(m, X, V):
         # (M8) moment of the column's unit force about the platform origin
         H_a_2_rpr_z = axis_x_y*q_rpr_in_base_x - axis_x_x*q_rpr_in_base_y
         ok = (
-        ok & m.every((abs(rho2_1_rpr) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr) >
-            _TOLERANCE * 0.62))
+        ok & m.every(leg, (abs(rho2_1_rpr) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr)
+            > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
         Q_rpr_t_4, Q_rpr_t_5, Q_rpr_t_6, M_ta_t, M_ta_t_2, M_aa_t, U_rpr_in_base_x,
@@ -1431,8 +1431,8 @@ def _run_dynamics(m, X, V):
         # (M7) rotational part of Z
         Z_a_t_2 = U_rpr2_in_base_y*q_rpr2_in_base_x - U_rpr2_in_base_x*q_rpr2_in_base_y
         ok = (
-        ok & m.every((abs(rho2_1_rpr2) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr2) >
-            _TOLERANCE * 0.62))
+        ok & m.every(leg, (abs(rho2_1_rpr2) > _TOLERANCE * _TOLERANCE * 0.3844) &
+            (abs(root_1_rpr2) > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
         Q_rpr2_t_4, Q_rpr2_t_5, Q_rpr2_t_6, M_ta_t_3, M_ta_t_4, M_aa_t_2, U_rpr2_in_base_x,
@@ -1534,8 +1534,8 @@ def _run_M(m, X):
         # (M3) rotational block of M
         M_aa_t = M_ta_t*q_rpr_in_base_y + M_ta_t_2*q_rpr_in_base_x
         ok = (
-        ok & m.every((abs(rho2_1_rpr) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr) >
-            _TOLERANCE * 0.62))
+        ok & m.every(leg, (abs(rho2_1_rpr) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr)
+            > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
         Q_rpr_t_4, Q_rpr_t_5, Q_rpr_t_6, M_ta_t, M_ta_t_2, M_aa_t,
@@ -1585,8 +1585,8 @@ def _run_M(m, X):
         # (M3) rotational block of M
         M_aa_t_2 = M_ta_t_3*q_rpr2_in_base_y + M_ta_t_4*q_rpr2_in_base_x
         ok = (
-        ok & m.every((abs(rho2_1_rpr2) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr2) >
-            _TOLERANCE * 0.62))
+        ok & m.every(leg, (abs(rho2_1_rpr2) > _TOLERANCE * _TOLERANCE * 0.3844) &
+            (abs(root_1_rpr2) > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
         Q_rpr2_t_4, Q_rpr2_t_5, Q_rpr2_t_6, M_ta_t_3, M_ta_t_4, M_aa_t_2,
@@ -1709,8 +1709,8 @@ def _run_Z(m, X, V):
         # (M7) rotational part of Z
         Z_a_t = U_rpr_in_base_y*q_rpr_in_base_x - U_rpr_in_base_x*q_rpr_in_base_y
         ok = (
-        ok & m.every((abs(rho2_1_rpr) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr) >
-            _TOLERANCE * 0.62))
+        ok & m.every(leg, (abs(rho2_1_rpr) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr)
+            > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
         U_rpr_in_base_x, U_rpr_in_base_y, Z_a_t,
@@ -1779,8 +1779,8 @@ def _run_Z(m, X, V):
         # (M7) rotational part of Z
         Z_a_t_2 = U_rpr2_in_base_y*q_rpr2_in_base_x - U_rpr2_in_base_x*q_rpr2_in_base_y
         ok = (
-        ok & m.every((abs(rho2_1_rpr2) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr2) >
-            _TOLERANCE * 0.62))
+        ok & m.every(leg, (abs(rho2_1_rpr2) > _TOLERANCE * _TOLERANCE * 0.3844) &
+            (abs(root_1_rpr2) > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
         U_rpr2_in_base_x, U_rpr2_in_base_y, Z_a_t_2,
@@ -1838,8 +1838,8 @@ def _run_H(m, X):
         # (M8) moment of the column's unit force about the platform origin
         H_a_2_rpr_z = axis_x_y*q_rpr_in_base_x - axis_x_x*q_rpr_in_base_y
         ok = (
-        ok & m.every((abs(rho2_1_rpr) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr) >
-            _TOLERANCE * 0.62))
+        ok & m.every(leg, (abs(rho2_1_rpr) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr)
+            > _TOLERANCE * 0.62))
         )
         out_H[_H_rpr[0][leg]] = axis_x_x
         out_H[_H_rpr[1][leg]] = axis_x_y
@@ -1964,8 +1964,8 @@ def _run_required(m, X, V, A):
         # (E5) moment that actuators and external wrench must give
         R_a_t = c_rpr_in_base_y*q_rpr_in_base_x - c_rpr_in_base_x*q_rpr_in_base_y
         ok = (
-        ok & m.every((abs(rho2_1_rpr) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr) >
-            _TOLERANCE * 0.62))
+        ok & m.every(leg, (abs(rho2_1_rpr) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr)
+            > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
         c_rpr_in_base_x, c_rpr_in_base_y, R_a_t,
@@ -2043,8 +2043,8 @@ def _run_required(m, X, V, A):
         # (E5) moment that actuators and external wrench must give
         R_a_t_2 = c_rpr2_in_base_y*q_rpr2_in_base_x - c_rpr2_in_base_x*q_rpr2_in_base_y
         ok = (
-        ok & m.every((abs(rho2_1_rpr2) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr2) >
-            _TOLERANCE * 0.62))
+        ok & m.every(leg, (abs(rho2_1_rpr2) > _TOLERANCE * _TOLERANCE * 0.3844) &
+            (abs(root_1_rpr2) > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
         c_rpr2_in_base_x, c_rpr2_in_base_y, R_a_t_2,
@@ -2099,8 +2099,8 @@ def _run_inverse_kinematics(m, X):
         # (rpr-K9) displacement of joint 1
         q_1_rpr = atan2(inv_root_1_rpr*py_1_rpr, inv_root_1_rpr*px_1_rpr)
         ok = (
-        ok & m.every((abs(rho2_1_rpr) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr) >
-            _TOLERANCE * 0.62))
+        ok & m.every(leg, (abs(rho2_1_rpr) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr)
+            > _TOLERANCE * 0.62))
         )
         out_q[_q_rpr[0][leg]] = q_1_rpr
         out_q[_q_rpr[1][leg]] = root_1_rpr
@@ -2130,8 +2130,8 @@ def _run_inverse_kinematics(m, X):
         # (rpr2-K9) displacement of joint 1
         q_1_rpr2 = atan2(inv_root_1_rpr2*py_1_rpr2, inv_root_1_rpr2*px_1_rpr2)
         ok = (
-        ok & m.every((abs(rho2_1_rpr2) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr2) >
-            _TOLERANCE * 0.62))
+        ok & m.every(leg, (abs(rho2_1_rpr2) > _TOLERANCE * _TOLERANCE * 0.3844) &
+            (abs(root_1_rpr2) > _TOLERANCE * 0.62))
         )
         out_q[_q_rpr2[0][leg]] = q_1_rpr2
         out_q[_q_rpr2[1][leg]] = root_1_rpr2
@@ -2190,8 +2190,8 @@ def _run_joint_rates(m, X, V):
         # (rpr-V6) rate of joint 1
         qd_1_rpr = inv_root_1_rpr*(S_dot_rpr_y*axis_x_x - S_dot_rpr_x*axis_x_y)
         ok = (
-        ok & m.every((abs(rho2_1_rpr) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr) >
-            _TOLERANCE * 0.62))
+        ok & m.every(leg, (abs(rho2_1_rpr) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr)
+            > _TOLERANCE * 0.62))
         )
         out_qd[_qd_rpr[0][leg]] = qd_1_rpr
         out_qd[_qd_rpr[1][leg]] = S_dot_rpr_tip_x
@@ -2225,8 +2225,8 @@ def _run_joint_rates(m, X, V):
         # (rpr2-V6) rate of joint 1
         qd_1_rpr2 = inv_root_1_rpr2*(S_dot_rpr2_y*axis_x_x_2 - S_dot_rpr2_x*axis_x_y_2)
         ok = (
-        ok & m.every((abs(rho2_1_rpr2) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr2) >
-            _TOLERANCE * 0.62))
+        ok & m.every(leg, (abs(rho2_1_rpr2) > _TOLERANCE * _TOLERANCE * 0.3844) &
+            (abs(root_1_rpr2) > _TOLERANCE * 0.62))
         )
         out_qd[_qd_rpr2[0][leg]] = qd_1_rpr2
         out_qd[_qd_rpr2[1][leg]] = S_dot_rpr2_tip_x
@@ -2305,8 +2305,8 @@ def _run_joint_accelerations(m, X, V, A):
         # (rpr-A7) acceleration of joint 1
         qdd_1_rpr = inv_root_1_rpr*rel_rpr_y
         ok = (
-        ok & m.every((abs(rho2_1_rpr) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr) >
-            _TOLERANCE * 0.62))
+        ok & m.every(leg, (abs(rho2_1_rpr) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr)
+            > _TOLERANCE * 0.62))
         )
         out_qdd[_qdd_rpr[0][leg]] = qdd_1_rpr
         out_qdd[_qdd_rpr[1][leg]] = rel_rpr_x
@@ -2357,8 +2357,8 @@ def _run_joint_accelerations(m, X, V, A):
         # (rpr2-A7) acceleration of joint 1
         qdd_1_rpr2 = inv_root_1_rpr2*rel_rpr2_y
         ok = (
-        ok & m.every((abs(rho2_1_rpr2) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr2) >
-            _TOLERANCE * 0.62))
+        ok & m.every(leg, (abs(rho2_1_rpr2) > _TOLERANCE * _TOLERANCE * 0.3844) &
+            (abs(root_1_rpr2) > _TOLERANCE * 0.62))
         )
         out_qdd[_qdd_rpr2[0][leg]] = qdd_1_rpr2
         out_qdd[_qdd_rpr2[1][leg]] = rel_rpr2_x
@@ -2463,8 +2463,8 @@ def _run_legs(m, X, V, A):
         c_true_rpr_in_base_x = axis_x_x*c_true_rpr_x - axis_x_y*c_true_rpr_y
         c_true_rpr_in_base_y = axis_x_x*c_true_rpr_y + axis_x_y*c_true_rpr_x
         ok = (
-        ok & m.every((abs(rho2_1_rpr) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr) >
-            _TOLERANCE * 0.62))
+        ok & m.every(leg, (abs(rho2_1_rpr) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr)
+            > _TOLERANCE * 0.62))
         )
         out_leg_force[_leg_force_rpr[0][leg]] = c_true_rpr_in_base_x
         out_leg_force[_leg_force_rpr[1][leg]] = c_true_rpr_in_base_y
@@ -2539,8 +2539,8 @@ def _run_legs(m, X, V, A):
         c_true_rpr2_in_base_x = axis_x_x_2*c_true_rpr2_x - axis_x_y_2*c_true_rpr2_y
         c_true_rpr2_in_base_y = axis_x_x_2*c_true_rpr2_y + axis_x_y_2*c_true_rpr2_x
         ok = (
-        ok & m.every((abs(rho2_1_rpr2) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr2) >
-            _TOLERANCE * 0.62))
+        ok & m.every(leg, (abs(rho2_1_rpr2) > _TOLERANCE * _TOLERANCE * 0.3844) &
+            (abs(root_1_rpr2) > _TOLERANCE * 0.62))
         )
         out_leg_force[_leg_force_rpr2[0][leg]] = c_true_rpr2_in_base_x
         out_leg_force[_leg_force_rpr2[1][leg]] = c_true_rpr2_in_base_y
@@ -2602,8 +2602,8 @@ def _run_potential(m, X):
             b_rpr_r0_x*s_1_rpr))
         )
         ok = (
-        ok & m.every((abs(rho2_1_rpr) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr) >
-            _TOLERANCE * 0.62))
+        ok & m.every(leg, (abs(rho2_1_rpr) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr)
+            > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
         potential_t_3,
@@ -2646,8 +2646,8 @@ def _run_potential(m, X):
             b_rpr2_r0_x*s_1_rpr2))
         )
         ok = (
-        ok & m.every((abs(rho2_1_rpr2) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr2) >
-            _TOLERANCE * 0.62))
+        ok & m.every(leg, (abs(rho2_1_rpr2) > _TOLERANCE * _TOLERANCE * 0.3844) &
+            (abs(root_1_rpr2) > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
         potential_t_2,
@@ -2719,8 +2719,8 @@ def _run_condition(m, X):
         # (rpr-N18) force at the connection point that balances the leg's inertia and weight along all freedoms
         least_pivots = least(1.6129032258064515*sqrt(pivot_size), 1.6129032258064517*pivot_size_2)
         clear = (
-        clear & m.every((abs(rho2_1_rpr) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr) >
-            _TOLERANCE * 0.62))
+        clear & m.every(leg, (abs(rho2_1_rpr) > _TOLERANCE * _TOLERANCE * 0.3844) &
+            (abs(root_1_rpr) > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
         spread_t_3,
@@ -2765,8 +2765,8 @@ def _run_condition(m, X):
         least(1.6129032258064515*sqrt(pivot_size_3), 1.6129032258064517*pivot_size_4)
         )
         clear = (
-        clear & m.every((abs(rho2_1_rpr2) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1_rpr2)
-            > _TOLERANCE * 0.62))
+        clear & m.every(leg, (abs(rho2_1_rpr2) > _TOLERANCE * _TOLERANCE * 0.3844) &
+            (abs(root_1_rpr2) > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
         spread_t_6,
@@ -2784,130 +2784,128 @@ _DEFAULT = Parameters()
 
 
 def _steps_M(m, X):
-    M_of_M, = m.run(_run_M, ("M",), X)
-    return (M_of_M,)
+    M, = m.run(_run_M, ("M",), X)
+    return (M,)
 
 
 def _steps_Z(m, X, V):
-    Z_of_Z, = m.run(_run_Z, ("Z",), X, V)
-    return (Z_of_Z,)
+    Z, = m.run(_run_Z, ("Z",), X, V)
+    return (Z,)
 
 
 def _steps_H(m, X):
-    H_of_H, = m.run(_run_H, ("H",), X)
-    return (H_of_H,)
+    H, = m.run(_run_H, ("H",), X)
+    return (H,)
 
 
 def _steps_inverse_kinematics(m, X):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
-    return (q_of_inverse_kinematics,)
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    return (q,)
 
 
 def _steps_joint_rates(m, X, V):
-    qd_of_joint_rates, = m.run(_run_joint_rates, ("qd",), X, V)
-    return (qd_of_joint_rates,)
+    qd, = m.run(_run_joint_rates, ("qd",), X, V)
+    return (qd,)
 
 
 def _steps_joint_accelerations(m, X, V, A):
-    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
-    return (qdd_of_joint_accelerations,)
+    qdd, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
+    return (qdd,)
 
 
 def _steps_dynamics(m, X, V):
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
-    return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
+    M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
+    return (M, Z, H,)
 
 
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
-    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
+    required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
-    subtract_2 = required_of_required - extend_1
-    solve_3 = _solve(H_of_required, subtract_2)
-    return (solve_3,)
+    subtract_2 = required - extend_1
+    tau = _solve(H, subtract_2)
+    return (tau,)
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
-    times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
+    M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
+    times_1 = np.einsum("ijs,js->is", H, tau)
     extend_2 = wrench
     add_3 = times_1 + extend_2
-    subtract_4 = add_3 - Z_of_dynamics
-    solve_5 = _solve(M_of_dynamics, subtract_4)
-    return (solve_5,)
+    subtract_4 = add_3 - Z
+    A = _solve(M, subtract_4)
+    return (A,)
 
 
 def _steps_complete_acceleration(m, X, V, A, wrench):
-    same_1 = A
-    return (same_1,)
+    completed = A
+    return (completed,)
 
 
 def _steps_leg_reactions(m, X, V, A, wrench):
-    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
+    required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
-    subtract_2 = required_of_required - extend_1
-    solve_3 = _solve(H_of_required, subtract_2)
-    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
-    add_forces_4 = _with_forces(leg_force_of_legs, solve_3, drive_of_legs, [0, 1, 2])
-    return (add_forces_4,)
+    subtract_2 = required - extend_1
+    solve_3 = _solve(H, subtract_2)
+    leg_force, drive = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
+    forces = _with_forces(leg_force, solve_3, drive, [0, 1, 2])
+    return (forces,)
 
 
 def _steps_energy(m, X, V):
-    M_of_M, = m.run(_run_M, ("M",), X)
+    M, = m.run(_run_M, ("M",), X)
     potential_of_potential, = m.run(_run_potential, ("potential",), X)
-    half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
-    entry_2 = potential_of_potential[0]
-    return (half_form_1, entry_2,)
+    kinetic = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M, V))
+    potential = potential_of_potential[0]
+    return (kinetic, potential,)
 
 
 def _steps_null_space(m, X):
-    H_of_H, = m.run(_run_H, ("H",), X)
-    null_basis_1 = _null_basis(H_of_H, 3)
-    return (null_basis_1,)
+    H, = m.run(_run_H, ("H",), X)
+    basis = _null_basis(H, 3)
+    return (basis,)
 
 
 def _steps_condition(m, X, length):
-    (
-    H_of_condition, lengths_of_condition, pivots_of_condition, reach_of_condition,
-    ) = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
-    choose_length_1 = _chosen_length(lengths_of_condition, length)
-    divide_rows_2 = _rows_divided(H_of_condition, choose_length_1, [2])
-    singular_values_3 = _singular_values(divide_rows_2)
-    return (singular_values_3, pivots_of_condition,)
+    H, lengths, legs, reach = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
+    choose_length_1 = _chosen_length(lengths, length)
+    divide_rows_2 = _rows_divided(H, choose_length_1, [2])
+    sigma = _singular_values(divide_rows_2)
+    return (sigma, legs,)
 
 
 def _steps_mismatch(m, X, q_actuated):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
-    take_1 = q_of_inverse_kinematics[[1, 3, 5]]
-    subtract_2 = q_actuated - take_1
-    return (subtract_2,)
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    take_1 = q[[1, 3, 5]]
+    gap = q_actuated - take_1
+    return (gap,)
 
 
 def _steps_slope(m, X):
-    H_of_H, = m.run(_run_H, ("H",), X)
-    return (H_of_H,)
+    slope, = m.run(_run_H, ("H",), X)
+    return (slope,)
 
 
 def _steps_forward_kinematics(m, q_actuated, X0):
-    X_found = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
-    return (X_found,)
+    X = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    return (X,)
 
 
 def _steps_rotation(m, X):
     take_1 = X[2:3]
-    rotation_of_angle_2 = _rotation_of_angle(take_1)
-    return (rotation_of_angle_2,)
+    R = _rotation_of_angle(take_1)
+    return (R,)
 
 
 def _steps_pose(m, t, R):
     angle_of_rotation_1 = _angle_of_rotation(R)
     join_2 = np.concatenate((t, angle_of_rotation_1))
-    extend_3 = join_2
-    return (extend_3,)
+    X = join_2
+    return (X,)
 
 
 def _steps_X_dot(m, X, V):
-    same_1 = V
-    return (same_1,)
+    X_dot = V
+    return (X_dot,)
 
 
 def M(X, p=None):

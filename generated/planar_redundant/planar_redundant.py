@@ -1038,7 +1038,7 @@ class _Floats:
     cos = staticmethod(lambda x: float(np.cos(x)))
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
     least = staticmethod(lambda x, y: float(np.minimum(x, y)))
-    every = staticmethod(lambda good: good)
+    every = staticmethod(lambda leg, good: good)
 
     def __init__(self, p, states):
         self.p, self.states = p, states
@@ -1085,9 +1085,9 @@ class _Arrays:
     def zeros(self, name):
         return np.zeros((math.prod(_SHAPES[name]), self.states))
 
-    def every(self, good):
+    def every(self, legs, good):
         """Whether it holds for all legs."""
-        return np.logical_and.reduce(good, axis=0)
+        return np.logical_and.reduce(np.broadcast_to(good, (legs.stop, self.states)), axis=0)
 
     def added(self, sums, legs, terms):
         """Sums over the legs, all at once."""
@@ -1694,8 +1694,8 @@ def _run_dynamics(m, X, V):
         # (M9) moment of the column's unit force about the platform origin
         H_a_2_prrr_z = q_prrr_in_base_x*w_2_prrr_t_2 + q_prrr_in_base_y*w_2_prrr_t
         ok = (
-        ok & m.every((abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) & (disc_2_prrr
-            >= 0.0) & (abs(-r_2_prrr_r0_y) > _TOLERANCE * size_prrr))
+        ok & m.every(leg, (abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) &
+            (disc_2_prrr >= 0.0) & (abs(-r_2_prrr_r0_y) > _TOLERANCE * size_prrr))
         )
         sums = m.added(sums, leg, (
         Q_prrr_t_5, Q_prrr_t_6, Q_prrr_t_7, M_ta_t, M_ta_t_2, M_aa_t, U_prrr_in_base_x,
@@ -1882,8 +1882,8 @@ def _run_dynamics(m, X, V):
         # (M10) moment of the column's unit force about the platform origin
         H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_2 + q_rrr_in_base_y*w_1_rrr_t
         ok = (
-        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
-            0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
+            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
         sums = m.added(sums, leg, (
         Q_rrr_t_5, Q_rrr_t_6, Q_rrr_t_7, M_ta_t_3, M_ta_t_4, M_aa_t_2, U_rrr_in_base_x,
@@ -2076,8 +2076,8 @@ def _run_M(m, X):
         )
         d0_P_1_prrr = d0_Gamma_1_prrr - d0_P_1_prrr_t
         ok = (
-        ok & m.every((abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) & (disc_2_prrr
-            >= 0.0) & (abs(-r_2_prrr_r0_y) > _TOLERANCE * size_prrr))
+        ok & m.every(leg, (abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) &
+            (disc_2_prrr >= 0.0) & (abs(-r_2_prrr_r0_y) > _TOLERANCE * size_prrr))
         )
         sums = m.added(sums, leg, (
         Q_prrr_t_5, Q_prrr_t_6, Q_prrr_t_7, M_ta_t, M_ta_t_2, M_aa_t,
@@ -2178,8 +2178,8 @@ def _run_M(m, X):
         # (M3) rotational block of M
         M_aa_t_2 = M_ta_t_3*q_rrr_in_base_y + M_ta_t_4*q_rrr_in_base_x
         ok = (
-        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
-            0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
+            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
         sums = m.added(sums, leg, (
         Q_rrr_t_5, Q_rrr_t_6, Q_rrr_t_7, M_ta_t_3, M_ta_t_4, M_aa_t_2,
@@ -2384,8 +2384,8 @@ def _run_Z(m, X, V):
         P_1_prrr_o_t = G_prrr_o_t*axis_y_prrr_axes3_r1_x + G_prrr_o_t_2*axis_y_prrr_axes3_r1_y
         P_1_prrr_o = T_1_prrr_o_x - P_1_prrr_o_t
         ok = (
-        ok & m.every((abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) & (disc_2_prrr
-            >= 0.0) & (abs(-r_2_prrr_r0_y) > _TOLERANCE * size_prrr))
+        ok & m.every(leg, (abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) &
+            (disc_2_prrr >= 0.0) & (abs(-r_2_prrr_r0_y) > _TOLERANCE * size_prrr))
         )
         sums = m.added(sums, leg, (
         U_prrr_in_base_x, U_prrr_in_base_y, Z_a_t,
@@ -2525,8 +2525,8 @@ def _run_Z(m, X, V):
         # (M7) rotational part of Z
         Z_a_t_2 = U_rrr_in_base_y*q_rrr_in_base_x - U_rrr_in_base_x*q_rrr_in_base_y
         ok = (
-        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
-            0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
+            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
         sums = m.added(sums, leg, (
         U_rrr_in_base_x, U_rrr_in_base_y, Z_a_t_2,
@@ -2623,8 +2623,8 @@ def _run_H(m, X):
         # (M9) moment of the column's unit force about the platform origin
         H_a_2_prrr_z = q_prrr_in_base_x*w_2_prrr_t_2 + q_prrr_in_base_y*w_2_prrr_t
         ok = (
-        ok & m.every((abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) & (disc_2_prrr
-            >= 0.0) & (abs(-r_2_prrr_r0_y) > _TOLERANCE * size_prrr))
+        ok & m.every(leg, (abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) &
+            (disc_2_prrr >= 0.0) & (abs(-r_2_prrr_r0_y) > _TOLERANCE * size_prrr))
         )
         out_H[_H_prrr[0][leg]] = 1.0
         out_H[_H_prrr[1][leg]] = -w_2_prrr_t
@@ -2691,8 +2691,8 @@ def _run_H(m, X):
         # (M10) moment of the column's unit force about the platform origin
         H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_2 + q_rrr_in_base_y*w_1_rrr_t
         ok = (
-        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
-            0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
+            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
         out_H[_H_rrr[0][leg]] = -w_1_rrr_t
         out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
@@ -2912,8 +2912,8 @@ def _run_required(m, X, V, A):
         P_1_prrr_t = G_prrr_t*axis_y_prrr_axes3_r1_x + G_prrr_t_2*axis_y_prrr_axes3_r1_y
         P_1_prrr = T_1_prrr_x - P_1_prrr_t
         ok = (
-        ok & m.every((abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) & (disc_2_prrr
-            >= 0.0) & (abs(-r_2_prrr_r0_y) > _TOLERANCE * size_prrr))
+        ok & m.every(leg, (abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) &
+            (disc_2_prrr >= 0.0) & (abs(-r_2_prrr_r0_y) > _TOLERANCE * size_prrr))
         )
         sums = m.added(sums, leg, (
         c_prrr_in_base_x, c_prrr_in_base_y, R_a_t,
@@ -3065,8 +3065,8 @@ def _run_required(m, X, V, A):
         # (E5) moment that actuators and external wrench must give
         R_a_t_2 = c_rrr_in_base_y*q_rrr_in_base_x - c_rrr_in_base_x*q_rrr_in_base_y
         ok = (
-        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
-            0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
+            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
         sums = m.added(sums, leg, (
         c_rrr_in_base_x, c_rrr_in_base_y, R_a_t_2,
@@ -3150,8 +3150,8 @@ def _run_inverse_kinematics(m, X):
             inv_uu_3_prrr_t*prrr_platform_joint_offset_x*x_3_prrr_x)
         )
         ok = (
-        ok & m.every((abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) & (disc_2_prrr
-            >= 0.0))
+        ok & m.every(leg, (abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) &
+            (disc_2_prrr >= 0.0))
         )
         out_q[_q_prrr[0][leg]] = y_1_extra_prrr
         out_q[_q_prrr[1][leg]] = q_2_prrr
@@ -3198,8 +3198,8 @@ def _run_inverse_kinematics(m, X):
             inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x)
         )
         ok = (
-        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
-            0.0))
+        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
+            >= 0.0))
         )
         out_q[_q_rrr[0][leg]] = q_1_rrr
         out_q[_q_rrr[1][leg]] = q_2_rrr
@@ -3303,8 +3303,8 @@ def _run_joint_rates(m, X, V):
             r_2_prrr_t*s_3_prrr))
         )
         ok = (
-        ok & m.every((abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) & (disc_2_prrr
-            >= 0.0) & (abs(-r_2_prrr_r0_y) > _TOLERANCE * size_prrr))
+        ok & m.every(leg, (abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) &
+            (disc_2_prrr >= 0.0) & (abs(-r_2_prrr_r0_y) > _TOLERANCE * size_prrr))
         )
         out_qd[_qd_prrr[0][leg]] = yd_1_prrr
         out_qd[_qd_prrr[1][leg]] = -qd_2_prrr
@@ -3379,8 +3379,8 @@ def _run_joint_rates(m, X, V):
             r_1_rrr_t*s_2_rrr))
         )
         ok = (
-        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
-            0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
+            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
         out_qd[_qd_rrr[0][leg]] = -qd_1_rrr
         out_qd[_qd_rrr[1][leg]] = qd_2_rrr
@@ -3521,8 +3521,8 @@ def _run_joint_accelerations(m, X, V, A):
         qdd_2_prrr = inv_r_2_prrr_r0_y*rel_prrr_x
         qdd_3_prrr = inv_prrr_platform_joint_offset_x*(rel_prrr_y + qdd_2_prrr*r_2_prrr_r0_x)
         ok = (
-        ok & m.every((abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) & (disc_2_prrr
-            >= 0.0) & (abs(-r_2_prrr_r0_y) > _TOLERANCE * size_prrr))
+        ok & m.every(leg, (abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) &
+            (disc_2_prrr >= 0.0) & (abs(-r_2_prrr_r0_y) > _TOLERANCE * size_prrr))
         )
         out_qdd[_qdd_prrr[0][leg]] = ydd_1_prrr
         out_qdd[_qdd_prrr[1][leg]] = -qdd_2_prrr
@@ -3626,8 +3626,8 @@ def _run_joint_accelerations(m, X, V, A):
         qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x
         qdd_2_rrr = inv_rrr_platform_joint_offset_x*(rel_rrr_y + qdd_1_rrr*r_1_rrr_r0_x)
         ok = (
-        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
-            0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
+            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
         out_qdd[_qdd_rrr[0][leg]] = -qdd_1_rrr
         out_qdd[_qdd_rrr[1][leg]] = qdd_2_rrr
@@ -3819,8 +3819,8 @@ def _run_legs(m, X, V, A):
         axis_y_prrr_axes3_in_base_y*c_true_prrr_y - axis_y_prrr_axes3_in_base_x*c_true_prrr_x
         )
         ok = (
-        ok & m.every((abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) & (disc_2_prrr
-            >= 0.0) & (abs(-r_2_prrr_r0_y) > _TOLERANCE * size_prrr))
+        ok & m.every(leg, (abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) &
+            (disc_2_prrr >= 0.0) & (abs(-r_2_prrr_r0_y) > _TOLERANCE * size_prrr))
         )
         out_leg_force[_leg_force_prrr[0][leg]] = c_true_prrr_in_base_x
         out_leg_force[_leg_force_prrr[1][leg]] = c_true_prrr_in_base_y
@@ -3968,8 +3968,8 @@ def _run_legs(m, X, V, A):
         axis_y_rrr_axes2_in_base_y*c_true_rrr_y - axis_y_rrr_axes2_in_base_x*c_true_rrr_x
         )
         ok = (
-        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
-            0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
+            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
         out_leg_force[_leg_force_rrr[0][leg]] = c_true_rrr_in_base_x
         out_leg_force[_leg_force_rrr[1][leg]] = c_true_rrr_in_base_y
@@ -4060,8 +4060,8 @@ def _run_potential(m, X):
             c_2_prrr*h_3_prrr_r0_y + h_2_prrr_x*s_2_prrr + h_3_prrr_r0_x*s_2_prrr - h_1_prrr_x)
         )
         ok = (
-        ok & m.every((abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) & (disc_2_prrr
-            >= 0.0))
+        ok & m.every(leg, (abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) &
+            (disc_2_prrr >= 0.0))
         )
         sums = m.added(sums, leg, (
         potential_t_6,
@@ -4118,8 +4118,8 @@ def _run_potential(m, X):
             - b_rrr_r0_x*s_1_rrr) - h_2_rrr_x*s_2_rrr)
         )
         ok = (
-        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
-            0.0))
+        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
+            >= 0.0))
         )
         sums = m.added(sums, leg, (
         potential_t_4,
@@ -4230,10 +4230,10 @@ def _run_condition(m, X):
         # (prrr-N50) force at the connection point that balances the leg's inertia and weight along all freedoms
         least_pivots = least(sqrt(inv_rho2_2_prrr_t_4*pivot_size), inv_size_prrr*pivot_size_2)
         clear = (
-        clear & m.every((abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) &
+        clear & m.every(leg, (abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) &
             (abs(-r_2_prrr_r0_y) > _TOLERANCE * size_prrr))
         )
-        reached = reached & m.every((disc_2_prrr >= 0.0))
+        reached = reached & m.every(leg, (disc_2_prrr >= 0.0))
         sums = m.added(sums, leg, (
         spread_t_3,
         ))
@@ -4317,10 +4317,10 @@ def _run_condition(m, X):
         # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
         least_pivots_2 = least(sqrt(inv_rho2_1_rrr_t_4*pivot_size_3), inv_size_rrr*pivot_size_4)
         clear = (
-        clear & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) &
+        clear & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) &
             (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
-        reached = reached & m.every((disc_1_rrr >= 0.0))
+        reached = reached & m.every(leg, (disc_1_rrr >= 0.0))
         sums = m.added(sums, leg, (
         spread_t_6,
         ))
@@ -4341,131 +4341,129 @@ _DEFAULT = Parameters()
 
 
 def _steps_M(m, X):
-    M_of_M, = m.run(_run_M, ("M",), X)
-    return (M_of_M,)
+    M, = m.run(_run_M, ("M",), X)
+    return (M,)
 
 
 def _steps_Z(m, X, V):
-    Z_of_Z, = m.run(_run_Z, ("Z",), X, V)
-    return (Z_of_Z,)
+    Z, = m.run(_run_Z, ("Z",), X, V)
+    return (Z,)
 
 
 def _steps_H(m, X):
-    H_of_H, = m.run(_run_H, ("H",), X)
-    return (H_of_H,)
+    H, = m.run(_run_H, ("H",), X)
+    return (H,)
 
 
 def _steps_inverse_kinematics(m, X):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
-    return (q_of_inverse_kinematics,)
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    return (q,)
 
 
 def _steps_joint_rates(m, X, V):
-    qd_of_joint_rates, = m.run(_run_joint_rates, ("qd",), X, V)
-    return (qd_of_joint_rates,)
+    qd, = m.run(_run_joint_rates, ("qd",), X, V)
+    return (qd,)
 
 
 def _steps_joint_accelerations(m, X, V, A):
-    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
-    return (qdd_of_joint_accelerations,)
+    qdd, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
+    return (qdd,)
 
 
 def _steps_dynamics(m, X, V):
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
-    return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
+    M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
+    return (M, Z, H,)
 
 
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
-    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
+    required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = _extended(wrench, 4)
-    subtract_2 = required_of_required - extend_1
-    solve_3 = _solve(H_of_required, subtract_2)
-    return (solve_3,)
+    subtract_2 = required - extend_1
+    tau = _solve(H, subtract_2)
+    return (tau,)
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
-    times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
+    M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
+    times_1 = np.einsum("ijs,js->is", H, tau)
     extend_2 = _extended(wrench, 4)
     add_3 = times_1 + extend_2
-    subtract_4 = add_3 - Z_of_dynamics
-    solve_5 = _solve(M_of_dynamics, subtract_4)
-    return (solve_5,)
+    subtract_4 = add_3 - Z
+    A = _solve(M, subtract_4)
+    return (A,)
 
 
 def _steps_complete_acceleration(m, X, V, A, wrench):
-    same_1 = A
-    return (same_1,)
+    completed = A
+    return (completed,)
 
 
 def _steps_leg_reactions(m, X, V, A, wrench):
-    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
+    required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = _extended(wrench, 4)
-    subtract_2 = required_of_required - extend_1
-    solve_3 = _solve(H_of_required, subtract_2)
-    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
-    add_forces_4 = _with_forces(leg_force_of_legs, solve_3, drive_of_legs, [0, 0, 1, 2])
-    return (add_forces_4,)
+    subtract_2 = required - extend_1
+    solve_3 = _solve(H, subtract_2)
+    leg_force, drive = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
+    forces = _with_forces(leg_force, solve_3, drive, [0, 0, 1, 2])
+    return (forces,)
 
 
 def _steps_energy(m, X, V):
-    M_of_M, = m.run(_run_M, ("M",), X)
+    M, = m.run(_run_M, ("M",), X)
     potential_of_potential, = m.run(_run_potential, ("potential",), X)
-    half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
-    entry_2 = potential_of_potential[0]
-    return (half_form_1, entry_2,)
+    kinetic = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M, V))
+    potential = potential_of_potential[0]
+    return (kinetic, potential,)
 
 
 def _steps_null_space(m, X):
-    H_of_H, = m.run(_run_H, ("H",), X)
-    null_basis_1 = _null_basis(H_of_H, 4)
-    return (null_basis_1,)
+    H, = m.run(_run_H, ("H",), X)
+    basis = _null_basis(H, 4)
+    return (basis,)
 
 
 def _steps_condition(m, X, length):
-    (
-    H_of_condition, lengths_of_condition, pivots_of_condition, reach_of_condition,
-    ) = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
-    choose_length_1 = _chosen_length(lengths_of_condition, length)
-    divide_rows_2 = _rows_divided(H_of_condition, choose_length_1, [2])
-    singular_values_3 = _singular_values(divide_rows_2)
-    return (singular_values_3, pivots_of_condition,)
+    H, lengths, legs, reach = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
+    choose_length_1 = _chosen_length(lengths, length)
+    divide_rows_2 = _rows_divided(H, choose_length_1, [2])
+    sigma = _singular_values(divide_rows_2)
+    return (sigma, legs,)
 
 
 def _steps_mismatch(m, X, q_actuated):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
-    take_1 = q_of_inverse_kinematics[[0, 1, 3, 5]]
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    take_1 = q[[0, 1, 3, 5]]
     subtract_2 = q_actuated - take_1
-    wrap_turns_3 = _wrapped(subtract_2, [1, 2, 3])
-    return (wrap_turns_3,)
+    gap = _wrapped(subtract_2, [1, 2, 3])
+    return (gap,)
 
 
 def _steps_slope(m, X):
-    H_of_H, = m.run(_run_H, ("H",), X)
-    return (H_of_H,)
+    slope, = m.run(_run_H, ("H",), X)
+    return (slope,)
 
 
 def _steps_forward_kinematics(m, q_actuated, X0):
-    X_found = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
-    return (X_found,)
+    X = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    return (X,)
 
 
 def _steps_rotation(m, X):
     take_1 = X[2:3]
-    rotation_of_angle_2 = _rotation_of_angle(take_1)
-    return (rotation_of_angle_2,)
+    R = _rotation_of_angle(take_1)
+    return (R,)
 
 
 def _steps_pose(m, t, R):
     angle_of_rotation_1 = _angle_of_rotation(R)
     join_2 = np.concatenate((t, angle_of_rotation_1))
-    extend_3 = _extended(join_2, 4)
-    return (extend_3,)
+    X = _extended(join_2, 4)
+    return (X,)
 
 
 def _steps_X_dot(m, X, V):
-    same_1 = V
-    return (same_1,)
+    X_dot = V
+    return (X_dot,)
 
 
 def M(X, p=None):

@@ -989,7 +989,7 @@ class _Floats:
     cos = staticmethod(lambda x: float(np.cos(x)))
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
     least = staticmethod(lambda x, y: float(np.minimum(x, y)))
-    every = staticmethod(lambda good: good)
+    every = staticmethod(lambda leg, good: good)
 
     def __init__(self, p, states):
         self.p, self.states = p, states
@@ -1036,9 +1036,9 @@ class _Arrays:
     def zeros(self, name):
         return np.zeros((math.prod(_SHAPES[name]), self.states))
 
-    def every(self, good):
+    def every(self, legs, good):
         """Whether it holds for all legs."""
-        return np.logical_and.reduce(good, axis=0)
+        return np.logical_and.reduce(np.broadcast_to(good, (legs.stop, self.states)), axis=0)
 
     def added(self, sums, legs, terms):
         """Sums over the legs, all at once."""
@@ -1595,8 +1595,8 @@ def _run_dynamics(m, X, V):
         # (M9) moment of the column's unit force about the platform origin
         H_a_2_rrr_z = q_rrr_in_base_x*w_2_rrr_in_base_y - q_rrr_in_base_y*w_2_rrr_in_base_x
         ok = (
-        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
-            0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
+            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
         sums = m.added(sums, leg, (
         Q_rrr_t_5, Q_rrr_t_6, Q_rrr_t_7, M_ta_t, M_ta_t_2, M_aa_t, U_rrr_in_base_x,
@@ -1785,8 +1785,8 @@ def _run_dynamics(m, X, V):
         # (M10) moment of the column's unit force about the platform origin
         H_a_1_rrr2_z = q_rrr2_in_base_x*w_1_rrr2_t_2 + q_rrr2_in_base_y*w_1_rrr2_t
         ok = (
-        ok & m.every((abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2
-            >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
+        ok & m.every(leg, (abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) &
+            (disc_1_rrr2 >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
         )
         sums = m.added(sums, leg, (
         Q_rrr2_t_5, Q_rrr2_t_6, Q_rrr2_t_7, M_ta_t_3, M_ta_t_4, M_aa_t_2, U_rrr2_in_base_x,
@@ -1934,8 +1934,8 @@ def _run_M(m, X):
         # (M3) rotational block of M
         M_aa_t = M_ta_t*q_rrr_in_base_y + M_ta_t_2*q_rrr_in_base_x
         ok = (
-        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
-            0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
+            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
         sums = m.added(sums, leg, (
         Q_rrr_t_5, Q_rrr_t_6, Q_rrr_t_7, M_ta_t, M_ta_t_2, M_aa_t,
@@ -2035,8 +2035,8 @@ def _run_M(m, X):
         # (M3) rotational block of M
         M_aa_t_2 = M_ta_t_3*q_rrr2_in_base_y + M_ta_t_4*q_rrr2_in_base_x
         ok = (
-        ok & m.every((abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2
-            >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
+        ok & m.every(leg, (abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) &
+            (disc_1_rrr2 >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
         )
         sums = m.added(sums, leg, (
         Q_rrr2_t_5, Q_rrr2_t_6, Q_rrr2_t_7, M_ta_t_3, M_ta_t_4, M_aa_t_2,
@@ -2231,8 +2231,8 @@ def _run_Z(m, X, V):
         # (M7) rotational part of Z
         Z_a_t = U_rrr_in_base_y*q_rrr_in_base_x - U_rrr_in_base_x*q_rrr_in_base_y
         ok = (
-        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
-            0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
+            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
         sums = m.added(sums, leg, (
         U_rrr_in_base_x, U_rrr_in_base_y, Z_a_t,
@@ -2372,8 +2372,8 @@ def _run_Z(m, X, V):
         # (M7) rotational part of Z
         Z_a_t_2 = U_rrr2_in_base_y*q_rrr2_in_base_x - U_rrr2_in_base_x*q_rrr2_in_base_y
         ok = (
-        ok & m.every((abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2
-            >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
+        ok & m.every(leg, (abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) &
+            (disc_1_rrr2 >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
         )
         sums = m.added(sums, leg, (
         U_rrr2_in_base_x, U_rrr2_in_base_y, Z_a_t_2,
@@ -2484,8 +2484,8 @@ def _run_H(m, X):
         # (M9) moment of the column's unit force about the platform origin
         H_a_2_rrr_z = q_rrr_in_base_x*w_2_rrr_in_base_y - q_rrr_in_base_y*w_2_rrr_in_base_x
         ok = (
-        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
-            0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
+            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
         out_H[_H_rrr[0][leg]] = -w_1_rrr_t
         out_H[_H_rrr[1][leg]] = w_1_rrr_t_2
@@ -2553,8 +2553,8 @@ def _run_H(m, X):
         # (M10) moment of the column's unit force about the platform origin
         H_a_1_rrr2_z = q_rrr2_in_base_x*w_1_rrr2_t_2 + q_rrr2_in_base_y*w_1_rrr2_t
         ok = (
-        ok & m.every((abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2
-            >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
+        ok & m.every(leg, (abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) &
+            (disc_1_rrr2 >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
         )
         out_H[_H_rrr2[0][leg]] = -w_1_rrr2_t
         out_H[_H_rrr2[1][leg]] = w_1_rrr2_t_2
@@ -2762,8 +2762,8 @@ def _run_required(m, X, V, A):
         # (E5) moment that actuators and external wrench must give
         R_a_t = c_rrr_in_base_y*q_rrr_in_base_x - c_rrr_in_base_x*q_rrr_in_base_y
         ok = (
-        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
-            0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
+            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
         sums = m.added(sums, leg, (
         c_rrr_in_base_x, c_rrr_in_base_y, R_a_t,
@@ -2921,8 +2921,8 @@ def _run_required(m, X, V, A):
         # (E5) moment that actuators and external wrench must give
         R_a_t_2 = c_rrr2_in_base_y*q_rrr2_in_base_x - c_rrr2_in_base_x*q_rrr2_in_base_y
         ok = (
-        ok & m.every((abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2
-            >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
+        ok & m.every(leg, (abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) &
+            (disc_1_rrr2 >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
         )
         sums = m.added(sums, leg, (
         c_rrr2_in_base_x, c_rrr2_in_base_y, R_a_t_2,
@@ -3001,8 +3001,8 @@ def _run_inverse_kinematics(m, X):
             inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x)
         )
         ok = (
-        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
-            0.0))
+        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
+            >= 0.0))
         )
         out_q[_q_rrr[0][leg]] = q_1_rrr
         out_q[_q_rrr[1][leg]] = q_2_rrr
@@ -3052,8 +3052,8 @@ def _run_inverse_kinematics(m, X):
             inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x)
         )
         ok = (
-        ok & m.every((abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2
-            >= 0.0))
+        ok & m.every(leg, (abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) &
+            (disc_1_rrr2 >= 0.0))
         )
         out_q[_q_rrr2[0][leg]] = q_1_rrr2
         out_q[_q_rrr2[1][leg]] = q_2_rrr2
@@ -3153,8 +3153,8 @@ def _run_joint_rates(m, X, V):
             r_1_rrr_t*s_2_rrr))
         )
         ok = (
-        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
-            0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
+            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
         out_qd[_qd_rrr[0][leg]] = -qd_1_rrr
         out_qd[_qd_rrr[1][leg]] = qd_2_rrr
@@ -3228,8 +3228,8 @@ def _run_joint_rates(m, X, V):
             r_1_rrr2_t*s_2_rrr2))
         )
         ok = (
-        ok & m.every((abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2
-            >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
+        ok & m.every(leg, (abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) &
+            (disc_1_rrr2 >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
         )
         out_qd[_qd_rrr2[0][leg]] = -qd_1_rrr2
         out_qd[_qd_rrr2[1][leg]] = qd_2_rrr2
@@ -3365,8 +3365,8 @@ def _run_joint_accelerations(m, X, V, A):
         qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x
         qdd_2_rrr = inv_rrr_platform_joint_offset_x*(rel_rrr_y + qdd_1_rrr*r_1_rrr_r0_x)
         ok = (
-        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
-            0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
+            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
         out_qdd[_qdd_rrr[0][leg]] = -qdd_1_rrr
         out_qdd[_qdd_rrr[1][leg]] = qdd_2_rrr
@@ -3469,8 +3469,8 @@ def _run_joint_accelerations(m, X, V, A):
         qdd_1_rrr2 = inv_r_1_rrr2_r0_y*rel_rrr2_x
         qdd_2_rrr2 = inv_rrr2_platform_joint_offset_x*(rel_rrr2_y + qdd_1_rrr2*r_1_rrr2_r0_x)
         ok = (
-        ok & m.every((abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2
-            >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
+        ok & m.every(leg, (abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) &
+            (disc_1_rrr2 >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
         )
         out_qdd[_qdd_rrr2[0][leg]] = -qdd_1_rrr2
         out_qdd[_qdd_rrr2[1][leg]] = qdd_2_rrr2
@@ -3662,8 +3662,8 @@ def _run_legs(m, X, V, A):
         axis_y_rrr_axes2_in_base_y*c_true_rrr_y - axis_y_rrr_axes2_in_base_x*c_true_rrr_x
         )
         ok = (
-        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
-            0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
+        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
+            >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
         out_leg_force[_leg_force_rrr[0][leg]] = c_true_rrr_in_base_x
         out_leg_force[_leg_force_rrr[1][leg]] = c_true_rrr_in_base_y
@@ -3815,8 +3815,8 @@ def _run_legs(m, X, V, A):
         axis_y_rrr2_axes2_in_base_y*c_true_rrr2_y - axis_y_rrr2_axes2_in_base_x*c_true_rrr2_x
         )
         ok = (
-        ok & m.every((abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2
-            >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
+        ok & m.every(leg, (abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) &
+            (disc_1_rrr2 >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
         )
         out_leg_force[_leg_force_rrr2[0][leg]] = c_true_rrr2_in_base_x
         out_leg_force[_leg_force_rrr2[1][leg]] = c_true_rrr2_in_base_y
@@ -3898,8 +3898,8 @@ def _run_potential(m, X):
             b_rrr_r0_x*s_1_rrr) - h_2_rrr_x*s_2_rrr)
         )
         ok = (
-        ok & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >=
-            0.0))
+        ok & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr
+            >= 0.0))
         )
         sums = m.added(sums, leg, (
         potential_t_3,
@@ -3960,8 +3960,8 @@ def _run_potential(m, X):
             rrr2_link1_mass*(b_rrr2_r0_y*c_1_rrr2 - b_rrr2_r0_x*s_1_rrr2) - h_2_rrr2_x*s_2_rrr2)
         )
         ok = (
-        ok & m.every((abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2
-            >= 0.0))
+        ok & m.every(leg, (abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) &
+            (disc_1_rrr2 >= 0.0))
         )
         sums = m.added(sums, leg, (
         potential_t_2,
@@ -4086,10 +4086,10 @@ def _run_condition(m, X):
         # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
         least_pivots = least(sqrt(inv_rho2_1_rrr_t_4*pivot_size), inv_size_rrr*pivot_size_2)
         clear = (
-        clear & m.every((abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) &
+        clear & m.every(leg, (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) &
             (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr))
         )
-        reached = reached & m.every((disc_1_rrr >= 0.0))
+        reached = reached & m.every(leg, (disc_1_rrr >= 0.0))
         sums = m.added(sums, leg, (
         spread_t_3,
         ))
@@ -4174,10 +4174,10 @@ def _run_condition(m, X):
         # (rrr2-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
         least_pivots_2 = least(sqrt(inv_rho2_1_rrr2_t_4*pivot_size_3), inv_size_rrr2*pivot_size_4)
         clear = (
-        clear & m.every((abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) &
+        clear & m.every(leg, (abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) &
             (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2))
         )
-        reached = reached & m.every((disc_1_rrr2 >= 0.0))
+        reached = reached & m.every(leg, (disc_1_rrr2 >= 0.0))
         sums = m.added(sums, leg, (
         spread_t_6,
         ))
@@ -4198,131 +4198,129 @@ _DEFAULT = Parameters()
 
 
 def _steps_M(m, X):
-    M_of_M, = m.run(_run_M, ("M",), X)
-    return (M_of_M,)
+    M, = m.run(_run_M, ("M",), X)
+    return (M,)
 
 
 def _steps_Z(m, X, V):
-    Z_of_Z, = m.run(_run_Z, ("Z",), X, V)
-    return (Z_of_Z,)
+    Z, = m.run(_run_Z, ("Z",), X, V)
+    return (Z,)
 
 
 def _steps_H(m, X):
-    H_of_H, = m.run(_run_H, ("H",), X)
-    return (H_of_H,)
+    H, = m.run(_run_H, ("H",), X)
+    return (H,)
 
 
 def _steps_inverse_kinematics(m, X):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
-    return (q_of_inverse_kinematics,)
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    return (q,)
 
 
 def _steps_joint_rates(m, X, V):
-    qd_of_joint_rates, = m.run(_run_joint_rates, ("qd",), X, V)
-    return (qd_of_joint_rates,)
+    qd, = m.run(_run_joint_rates, ("qd",), X, V)
+    return (qd,)
 
 
 def _steps_joint_accelerations(m, X, V, A):
-    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
-    return (qdd_of_joint_accelerations,)
+    qdd, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
+    return (qdd,)
 
 
 def _steps_dynamics(m, X, V):
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
-    return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
+    M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
+    return (M, Z, H,)
 
 
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
-    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
+    required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
-    subtract_2 = required_of_required - extend_1
-    solve_3 = _solve(H_of_required, subtract_2)
-    return (solve_3,)
+    subtract_2 = required - extend_1
+    tau = _solve(H, subtract_2)
+    return (tau,)
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
-    times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
+    M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
+    times_1 = np.einsum("ijs,js->is", H, tau)
     extend_2 = wrench
     add_3 = times_1 + extend_2
-    subtract_4 = add_3 - Z_of_dynamics
-    solve_5 = _solve(M_of_dynamics, subtract_4)
-    return (solve_5,)
+    subtract_4 = add_3 - Z
+    A = _solve(M, subtract_4)
+    return (A,)
 
 
 def _steps_complete_acceleration(m, X, V, A, wrench):
-    same_1 = A
-    return (same_1,)
+    completed = A
+    return (completed,)
 
 
 def _steps_leg_reactions(m, X, V, A, wrench):
-    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
+    required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
-    subtract_2 = required_of_required - extend_1
-    solve_3 = _solve(H_of_required, subtract_2)
-    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
-    add_forces_4 = _with_forces(leg_force_of_legs, solve_3, drive_of_legs, [0, 0, 1])
-    return (add_forces_4,)
+    subtract_2 = required - extend_1
+    solve_3 = _solve(H, subtract_2)
+    leg_force, drive = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
+    forces = _with_forces(leg_force, solve_3, drive, [0, 0, 1])
+    return (forces,)
 
 
 def _steps_energy(m, X, V):
-    M_of_M, = m.run(_run_M, ("M",), X)
+    M, = m.run(_run_M, ("M",), X)
     potential_of_potential, = m.run(_run_potential, ("potential",), X)
-    half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
-    entry_2 = potential_of_potential[0]
-    return (half_form_1, entry_2,)
+    kinetic = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M, V))
+    potential = potential_of_potential[0]
+    return (kinetic, potential,)
 
 
 def _steps_null_space(m, X):
-    H_of_H, = m.run(_run_H, ("H",), X)
-    null_basis_1 = _null_basis(H_of_H, 3)
-    return (null_basis_1,)
+    H, = m.run(_run_H, ("H",), X)
+    basis = _null_basis(H, 3)
+    return (basis,)
 
 
 def _steps_condition(m, X, length):
-    (
-    H_of_condition, lengths_of_condition, pivots_of_condition, reach_of_condition,
-    ) = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
-    choose_length_1 = _chosen_length(lengths_of_condition, length)
-    divide_rows_2 = _rows_divided(H_of_condition, choose_length_1, [2])
-    singular_values_3 = _singular_values(divide_rows_2)
-    return (singular_values_3, pivots_of_condition,)
+    H, lengths, legs, reach = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
+    choose_length_1 = _chosen_length(lengths, length)
+    divide_rows_2 = _rows_divided(H, choose_length_1, [2])
+    sigma = _singular_values(divide_rows_2)
+    return (sigma, legs,)
 
 
 def _steps_mismatch(m, X, q_actuated):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
-    take_1 = q_of_inverse_kinematics[0:3]
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    take_1 = q[0:3]
     subtract_2 = q_actuated - take_1
-    wrap_turns_3 = _wrapped(subtract_2, [0, 1, 2])
-    return (wrap_turns_3,)
+    gap = _wrapped(subtract_2, [0, 1, 2])
+    return (gap,)
 
 
 def _steps_slope(m, X):
-    H_of_H, = m.run(_run_H, ("H",), X)
-    return (H_of_H,)
+    slope, = m.run(_run_H, ("H",), X)
+    return (slope,)
 
 
 def _steps_forward_kinematics(m, q_actuated, X0):
-    X_found = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
-    return (X_found,)
+    X = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    return (X,)
 
 
 def _steps_rotation(m, X):
     take_1 = X[2:3]
-    rotation_of_angle_2 = _rotation_of_angle(take_1)
-    return (rotation_of_angle_2,)
+    R = _rotation_of_angle(take_1)
+    return (R,)
 
 
 def _steps_pose(m, t, R):
     angle_of_rotation_1 = _angle_of_rotation(R)
     join_2 = np.concatenate((t, angle_of_rotation_1))
-    extend_3 = join_2
-    return (extend_3,)
+    X = join_2
+    return (X,)
 
 
 def _steps_X_dot(m, X, V):
-    same_1 = V
-    return (same_1,)
+    X_dot = V
+    return (X_dot,)
 
 
 def M(X, p=None):

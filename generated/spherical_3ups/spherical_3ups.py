@@ -805,7 +805,7 @@ class _Floats:
     cos = staticmethod(lambda x: float(np.cos(x)))
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
     least = staticmethod(lambda x, y: float(np.minimum(x, y)))
-    every = staticmethod(lambda good: good)
+    every = staticmethod(lambda leg, good: good)
 
     def __init__(self, p, states):
         self.p, self.states = p, states
@@ -852,9 +852,9 @@ class _Arrays:
     def zeros(self, name):
         return np.zeros((math.prod(_SHAPES[name]), self.states))
 
-    def every(self, good):
+    def every(self, legs, good):
         """Whether it holds for all legs."""
-        return np.logical_and.reduce(good, axis=0)
+        return np.logical_and.reduce(np.broadcast_to(good, (legs.stop, self.states)), axis=0)
 
     def added(self, sums, legs, terms):
         """Sums over the legs, all at once."""
@@ -1535,9 +1535,9 @@ def _run_dynamics(m, X, V):
         H_a_3_y = axis_x_x*q_in_base_z - axis_x_z*q_in_base_x
         H_a_3_z = axis_x_y*q_in_base_x - axis_x_x*q_in_base_y
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) > _TOLERANCE * 0.8) &
-            (abs(root_2) > _TOLERANCE * 0.8))
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) >
+            _TOLERANCE * 0.8) & (abs(root_2) > _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
         M_aa_t_6, M_aa_t_7, M_aa_t_8, M_aa_t_9, M_aa_t_10, M_aa_t_11, Z_a_t, Z_a_t_2, Z_a_t_3,
@@ -1753,9 +1753,9 @@ def _run_M(m, X):
         M_aa_t_10 = M_aa_t*q_in_base_z + M_aa_t_5*q_in_base_x
         M_aa_t_11 = M_aa_t*q_in_base_y - M_aa_t_3*q_in_base_x
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) > _TOLERANCE * 0.8) &
-            (abs(root_2) > _TOLERANCE * 0.8))
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) >
+            _TOLERANCE * 0.8) & (abs(root_2) > _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
         M_aa_t_6, M_aa_t_7, M_aa_t_8, M_aa_t_9, M_aa_t_10, M_aa_t_11,
@@ -2011,9 +2011,9 @@ def _run_Z(m, X, V):
         Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
         Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) > _TOLERANCE * 0.8) &
-            (abs(root_2) > _TOLERANCE * 0.8))
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) >
+            _TOLERANCE * 0.8) & (abs(root_2) > _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
         Z_a_t, Z_a_t_2, Z_a_t_3,
@@ -2108,8 +2108,9 @@ def _run_H(m, X):
         H_a_3_y = axis_x_x*q_in_base_z - axis_x_z*q_in_base_x
         H_a_3_z = axis_x_y*q_in_base_x - axis_x_x*q_in_base_y
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8))
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_2) >
+            _TOLERANCE * 0.8))
         )
         out_H[_H_ups[0][leg]] = H_a_3_x
         out_H[_H_ups[1][leg]] = H_a_3_y
@@ -2365,9 +2366,9 @@ def _run_required(m, X, V, A):
         R_a_t_2 = c_in_base_x*q_in_base_z - c_in_base_z*q_in_base_x
         R_a_t_3 = c_in_base_y*q_in_base_x - c_in_base_x*q_in_base_y
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) > _TOLERANCE * 0.8) &
-            (abs(root_2) > _TOLERANCE * 0.8))
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) >
+            _TOLERANCE * 0.8) & (abs(root_2) > _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
         R_a_t, R_a_t_2, R_a_t_3,
@@ -2466,8 +2467,8 @@ def _run_inverse_kinematics(m, X):
         # (ups-K17) displacement of joint 2
         q_2 = atan2(-inv_root_2*xi_1_t, inv_root_2*root_1)
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001))
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
         )
         out_q[_q_ups[0][leg]] = q_1
         out_q[_q_ups[1][leg]] = q_2
@@ -2585,9 +2586,9 @@ def _run_joint_rates(m, X, V):
             axis_z_ups_axes2_in_base_z*u_1_t_3)
         )
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) > _TOLERANCE * 0.8) &
-            (abs(root_2) > _TOLERANCE * 0.8))
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) >
+            _TOLERANCE * 0.8) & (abs(root_2) > _TOLERANCE * 0.8))
         )
         out_qd[_qd_ups[0][leg]] = qd_1
         out_qd[_qd_ups[1][leg]] = qd_2
@@ -2744,9 +2745,9 @@ def _run_joint_accelerations(m, X, V, A):
         )
         qdd_1 = inv_root_1*rel_z
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) > _TOLERANCE * 0.8) &
-            (abs(root_2) > _TOLERANCE * 0.8))
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) >
+            _TOLERANCE * 0.8) & (abs(root_2) > _TOLERANCE * 0.8))
         )
         out_qdd[_qdd_ups[0][leg]] = qdd_1
         out_qdd[_qdd_ups[1][leg]] = qdd_2
@@ -2970,9 +2971,9 @@ def _run_legs(m, X, V, A):
         axis_x_z*c_true_x + axis_y_ups_axes2_z*c_true_y + axis_z_ups_axes2_in_base_z*c_true_z
         )
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) > _TOLERANCE * 0.8) &
-            (abs(root_2) > _TOLERANCE * 0.8))
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) >
+            _TOLERANCE * 0.8) & (abs(root_2) > _TOLERANCE * 0.8))
         )
         out_leg_force[_leg_force_ups[0][leg]] = c_true_in_base_x
         out_leg_force[_leg_force_ups[1][leg]] = c_true_in_base_y
@@ -3085,8 +3086,8 @@ def _run_potential(m, X):
             (-c_2*g_r0_z - g_r1_y*s_2)*(h_2_z + h_3_z - ups_link2_mass*(-b_r0_z*c_2 - b_r1_y*s_2))
         )
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001))
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
         )
         sums = m.added(sums, leg, (
         potential_t_5,
@@ -3206,7 +3207,7 @@ def _run_condition(m, X):
             1.25*pivot_size_4)
         )
         clear = (
-        clear & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+        clear & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_1) >
             _TOLERANCE * 0.8) & (abs(root_2) > _TOLERANCE * 0.8))
         )
@@ -3229,139 +3230,137 @@ _DEFAULT = Parameters()
 
 
 def _steps_M(m, X):
-    M_of_M, = m.run(_run_M, ("M",), X)
-    return (M_of_M,)
+    M, = m.run(_run_M, ("M",), X)
+    return (M,)
 
 
 def _steps_Z(m, X, V):
-    Z_of_Z, = m.run(_run_Z, ("Z",), X, V)
-    return (Z_of_Z,)
+    Z, = m.run(_run_Z, ("Z",), X, V)
+    return (Z,)
 
 
 def _steps_H(m, X):
-    H_of_H, = m.run(_run_H, ("H",), X)
-    return (H_of_H,)
+    H, = m.run(_run_H, ("H",), X)
+    return (H,)
 
 
 def _steps_inverse_kinematics(m, X):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
-    return (q_of_inverse_kinematics,)
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    return (q,)
 
 
 def _steps_joint_rates(m, X, V):
-    qd_of_joint_rates, = m.run(_run_joint_rates, ("qd",), X, V)
-    return (qd_of_joint_rates,)
+    qd, = m.run(_run_joint_rates, ("qd",), X, V)
+    return (qd,)
 
 
 def _steps_joint_accelerations(m, X, V, A):
-    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
-    return (qdd_of_joint_accelerations,)
+    qdd, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
+    return (qdd,)
 
 
 def _steps_dynamics(m, X, V):
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
-    return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
+    M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
+    return (M, Z, H,)
 
 
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
-    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
+    required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
-    subtract_2 = required_of_required - extend_1
-    solve_3 = _solve(H_of_required, subtract_2)
-    return (solve_3,)
+    subtract_2 = required - extend_1
+    tau = _solve(H, subtract_2)
+    return (tau,)
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
-    times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
+    M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
+    times_1 = np.einsum("ijs,js->is", H, tau)
     extend_2 = wrench
     add_3 = times_1 + extend_2
-    subtract_4 = add_3 - Z_of_dynamics
-    solve_5 = _solve(M_of_dynamics, subtract_4)
-    return (solve_5,)
+    subtract_4 = add_3 - Z
+    A = _solve(M, subtract_4)
+    return (A,)
 
 
 def _steps_complete_acceleration(m, X, V, A, wrench):
-    same_1 = A
-    return (same_1,)
+    completed = A
+    return (completed,)
 
 
 def _steps_leg_reactions(m, X, V, A, wrench):
-    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
+    required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
-    subtract_2 = required_of_required - extend_1
-    solve_3 = _solve(H_of_required, subtract_2)
-    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
-    add_forces_4 = _with_forces(leg_force_of_legs, solve_3, drive_of_legs, [0, 1, 2])
-    return (add_forces_4,)
+    subtract_2 = required - extend_1
+    solve_3 = _solve(H, subtract_2)
+    leg_force, drive = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
+    forces = _with_forces(leg_force, solve_3, drive, [0, 1, 2])
+    return (forces,)
 
 
 def _steps_energy(m, X, V):
-    M_of_M, = m.run(_run_M, ("M",), X)
+    M, = m.run(_run_M, ("M",), X)
     potential_of_potential, = m.run(_run_potential, ("potential",), X)
-    half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
-    entry_2 = potential_of_potential[0]
-    return (half_form_1, entry_2,)
+    kinetic = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M, V))
+    potential = potential_of_potential[0]
+    return (kinetic, potential,)
 
 
 def _steps_null_space(m, X):
-    H_of_H, = m.run(_run_H, ("H",), X)
-    null_basis_1 = _null_basis(H_of_H, 3)
-    return (null_basis_1,)
+    H, = m.run(_run_H, ("H",), X)
+    basis = _null_basis(H, 3)
+    return (basis,)
 
 
 def _steps_condition(m, X, length):
-    (
-    H_of_condition, lengths_of_condition, pivots_of_condition, reach_of_condition,
-    ) = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
-    choose_length_1 = _chosen_length(lengths_of_condition, length)
-    divide_rows_2 = _rows_divided(H_of_condition, choose_length_1, [0, 1, 2])
-    singular_values_3 = _singular_values(divide_rows_2)
-    return (singular_values_3, pivots_of_condition,)
+    H, lengths, legs, reach = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
+    choose_length_1 = _chosen_length(lengths, length)
+    divide_rows_2 = _rows_divided(H, choose_length_1, [0, 1, 2])
+    sigma = _singular_values(divide_rows_2)
+    return (sigma, legs,)
 
 
 def _steps_mismatch(m, X, q_actuated):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
-    take_1 = q_of_inverse_kinematics[[2, 5, 8]]
-    subtract_2 = q_actuated - take_1
-    return (subtract_2,)
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    take_1 = q[[2, 5, 8]]
+    gap = q_actuated - take_1
+    return (gap,)
 
 
 def _steps_slope(m, X):
-    H_of_H, = m.run(_run_H, ("H",), X)
-    return (H_of_H,)
+    slope, = m.run(_run_H, ("H",), X)
+    return (slope,)
 
 
 def _steps_forward_kinematics(m, q_actuated, X0):
-    X_found = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
-    return (X_found,)
+    X = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    return (X,)
 
 
 def _steps_rotation(m, X):
     take_1 = X[0:4]
-    rotation_of_quaternion_2 = _rotation_of_quaternion(take_1)
-    return (rotation_of_quaternion_2,)
+    R = _rotation_of_quaternion(take_1)
+    return (R,)
 
 
 def _steps_pose(m, t, R):
     quaternion_of_rotation_1 = _quaternion_of_rotation(R)
     join_2 = np.concatenate((t, quaternion_of_rotation_1))
-    extend_3 = join_2
-    return (extend_3,)
+    X = join_2
+    return (X,)
 
 
 def _steps_X_dot(m, X, V):
     take_1 = V[0:3]
     take_2 = X[0:4]
-    quaternion_rate_3 = _quaternion_rate(take_2, take_1)
-    return (quaternion_rate_3,)
+    X_dot = _quaternion_rate(take_2, take_1)
+    return (X_dot,)
 
 
 def _steps_pose_from_rpy(m, t, rpy):
     quaternion_of_rpy_1 = _quaternion_of_rpy(rpy)
     join_2 = np.concatenate((t, quaternion_of_rpy_1))
-    extend_3 = join_2
-    return (extend_3,)
+    X = join_2
+    return (X,)
 
 
 def M(X, p=None):

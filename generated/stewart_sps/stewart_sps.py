@@ -853,7 +853,7 @@ class _Floats:
     cos = staticmethod(lambda x: float(np.cos(x)))
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
     least = staticmethod(lambda x, y: float(np.minimum(x, y)))
-    every = staticmethod(lambda good: good)
+    every = staticmethod(lambda leg, good: good)
 
     def __init__(self, p, states):
         self.p, self.states = p, states
@@ -900,9 +900,9 @@ class _Arrays:
     def zeros(self, name):
         return np.zeros((math.prod(_SHAPES[name]), self.states))
 
-    def every(self, good):
+    def every(self, legs, good):
         """Whether it holds for all legs."""
-        return np.logical_and.reduce(good, axis=0)
+        return np.logical_and.reduce(np.broadcast_to(good, (legs.stop, self.states)), axis=0)
 
     def added(self, sums, legs, terms):
         """Sums over the legs, all at once."""
@@ -1737,9 +1737,9 @@ def _run_dynamics(m, X, V):
         H_a_4_y = axis_z_x*q_in_base_z - axis_z_z*q_in_base_x
         H_a_4_z = axis_z_y*q_in_base_x - axis_z_x*q_in_base_y
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-w_1_t_2) > _TOLERANCE *
-            0.6400000000000001))
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-w_1_t_2) >
+            _TOLERANCE * 0.6400000000000001))
         )
         sums = m.added(sums, leg, (
         Q_t_10, Q_t_11, Q_t_12, Q_t_14, Q_t_15, Q_t_17, M_ta_t_3, M_ta_t_4, M_ta_t_5,
@@ -2109,9 +2109,9 @@ def _run_M(m, X):
         M_ya_3_y = d_P_3_in_base_x*q_in_base_z - d_P_3_in_base_z*q_in_base_x
         M_ya_3_z = d_P_3_in_base_y*q_in_base_x - d_P_3_in_base_x*q_in_base_y
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-w_1_t_2) > _TOLERANCE *
-            0.6400000000000001))
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-w_1_t_2) >
+            _TOLERANCE * 0.6400000000000001))
         )
         sums = m.added(sums, leg, (
         Q_t_10, Q_t_11, Q_t_12, Q_t_14, Q_t_15, Q_t_17, M_ta_t_3, M_ta_t_4, M_ta_t_5,
@@ -2513,9 +2513,9 @@ def _run_Z(m, X, V):
         Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
         Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-w_1_t_2) > _TOLERANCE *
-            0.6400000000000001))
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-w_1_t_2) >
+            _TOLERANCE * 0.6400000000000001))
         )
         sums = m.added(sums, leg, (
         U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,
@@ -2625,8 +2625,8 @@ def _run_H(m, X):
         H_a_4_y = axis_z_x*q_in_base_z - axis_z_z*q_in_base_x
         H_a_4_z = axis_z_y*q_in_base_x - axis_z_x*q_in_base_y
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001))
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
         )
         out_H[_H_urps[0][leg]] = axis_z_x
         out_H[_H_urps[1][leg]] = axis_z_y
@@ -3000,9 +3000,9 @@ def _run_required(m, X, V, A):
         R_a_t_2 = c_in_base_x*q_in_base_z - c_in_base_z*q_in_base_x
         R_a_t_3 = c_in_base_y*q_in_base_x - c_in_base_x*q_in_base_y
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-w_1_t_2) > _TOLERANCE *
-            0.6400000000000001))
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-w_1_t_2) >
+            _TOLERANCE * 0.6400000000000001))
         )
         sums = m.added(sums, leg, (
         c_in_base_x, c_in_base_y, c_in_base_z, R_a_t, R_a_t_2, R_a_t_3,
@@ -3121,8 +3121,8 @@ def _run_inverse_kinematics(m, X):
         # (urps-K19) displacement of joint 2
         q_2 = atan2(-inv_root_2*xi_1_t, inv_root_2*root_1)
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001))
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
         )
         out_q[_q_urps[0][leg]] = q_1
         out_q[_q_urps[1][leg]] = q_2
@@ -3285,9 +3285,9 @@ def _run_joint_rates(m, X, V):
         qd_1 = inv_w_1_t_23*(S_dot_rest_tip_x*v_2_t_2 - S_dot_rest_tip_y*v_2_t)
         qd_2 = inv_w_1_t_23*(S_dot_rest_tip_x*v_1_t_3 + S_dot_rest_tip_y*v_1_t_2)
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-w_1_t_2) > _TOLERANCE *
-            0.6400000000000001))
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-w_1_t_2) >
+            _TOLERANCE * 0.6400000000000001))
         )
         out_qd[_qd_urps[0][leg]] = qd_1
         out_qd[_qd_urps[1][leg]] = -qd_2
@@ -3516,9 +3516,9 @@ def _run_joint_accelerations(m, X, V, A):
         qdd_1 = inv_w_1_t_23*(rel_x*v_2_t_2 - rel_y*v_2_t)
         qdd_2 = inv_w_1_t_23*(rel_x*v_1_t_3 + rel_y*v_1_t_2)
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-w_1_t_2) > _TOLERANCE *
-            0.6400000000000001))
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-w_1_t_2) >
+            _TOLERANCE * 0.6400000000000001))
         )
         out_qdd[_qdd_urps[0][leg]] = qdd_1
         out_qdd[_qdd_urps[1][leg]] = -qdd_2
@@ -3828,9 +3828,9 @@ def _run_legs(m, X, V, A):
         axis_x_urps_axes3_z*c_true_x + axis_y_urps_axes3_in_base_z*c_true_y + axis_z_z*c_true_z
         )
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-w_1_t_2) > _TOLERANCE *
-            0.6400000000000001))
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-w_1_t_2) >
+            _TOLERANCE * 0.6400000000000001))
         )
         out_leg_force[_leg_force_urps[0][leg]] = c_true_in_base_x
         out_leg_force[_leg_force_urps[1][leg]] = c_true_in_base_y
@@ -3957,8 +3957,8 @@ def _run_potential(m, X):
             urps_link3_mass*(b_r1_x*s_3 - b_r3_y*c_3_t))
         )
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001))
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
         )
         sums = m.added(sums, leg, (
         potential_t_2,
@@ -4089,7 +4089,7 @@ def _run_condition(m, X):
             1.5624999999999998*pivot_size_3)
         )
         clear = (
-        clear & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+        clear & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-w_1_t) >
             _TOLERANCE * 0.6400000000000001))
         )
@@ -4115,140 +4115,138 @@ _DEFAULT = Parameters()
 
 
 def _steps_M(m, X):
-    M_of_M, = m.run(_run_M, ("M",), X)
-    return (M_of_M,)
+    M, = m.run(_run_M, ("M",), X)
+    return (M,)
 
 
 def _steps_Z(m, X, V):
-    Z_of_Z, = m.run(_run_Z, ("Z",), X, V)
-    return (Z_of_Z,)
+    Z, = m.run(_run_Z, ("Z",), X, V)
+    return (Z,)
 
 
 def _steps_H(m, X):
-    H_of_H, = m.run(_run_H, ("H",), X)
-    return (H_of_H,)
+    H, = m.run(_run_H, ("H",), X)
+    return (H,)
 
 
 def _steps_inverse_kinematics(m, X):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
-    return (q_of_inverse_kinematics,)
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    return (q,)
 
 
 def _steps_joint_rates(m, X, V):
-    qd_of_joint_rates, = m.run(_run_joint_rates, ("qd",), X, V)
-    return (qd_of_joint_rates,)
+    qd, = m.run(_run_joint_rates, ("qd",), X, V)
+    return (qd,)
 
 
 def _steps_joint_accelerations(m, X, V, A):
-    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
-    return (qdd_of_joint_accelerations,)
+    qdd, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
+    return (qdd,)
 
 
 def _steps_dynamics(m, X, V):
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
-    return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
+    M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
+    return (M, Z, H,)
 
 
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
-    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
+    required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = _extended(wrench, 12)
-    subtract_2 = required_of_required - extend_1
-    take_3 = H_of_required[0:6]
+    subtract_2 = required - extend_1
+    take_3 = H[0:6]
     take_4 = subtract_2[0:6]
-    solve_5 = _solve(take_3, take_4)
-    return (solve_5,)
+    tau = _solve(take_3, take_4)
+    return (tau,)
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
-    times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
+    M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
+    times_1 = np.einsum("ijs,js->is", H, tau)
     extend_2 = _extended(wrench, 12)
     add_3 = times_1 + extend_2
-    subtract_4 = add_3 - Z_of_dynamics
-    solve_5 = _solve(M_of_dynamics, subtract_4)
-    return (solve_5,)
+    subtract_4 = add_3 - Z
+    A = _solve(M, subtract_4)
+    return (A,)
 
 
 def _steps_complete_acceleration(m, X, V, A, wrench):
     clear_at_1 = _cleared_at(A, [6, 7, 8, 9, 10, 11])
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
-    times_2 = np.einsum("ijs,js->is", M_of_dynamics, clear_at_1)
-    add_3 = times_2 + Z_of_dynamics
+    M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
+    times_2 = np.einsum("ijs,js->is", M, clear_at_1)
+    add_3 = times_2 + Z
     extend_4 = _extended(wrench, 12)
     subtract_5 = add_3 - extend_4
-    take_columns_6 = M_of_dynamics[:, 6:12]
+    take_columns_6 = M[:, 6:12]
     take_7 = take_columns_6[6:12]
     take_8 = subtract_5[6:12]
     negative_9 = -take_8
     solve_10 = _solve(take_7, negative_9)
-    add_at_11 = _added_at(clear_at_1, solve_10, [6, 7, 8, 9, 10, 11])
-    return (add_at_11,)
+    completed = _added_at(clear_at_1, solve_10, [6, 7, 8, 9, 10, 11])
+    return (completed,)
 
 
 def _steps_leg_reactions(m, X, V, A, wrench):
-    required_of_required, H_of_required = m.run(_run_required, ("required", "H"), X, V, A)
+    required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = _extended(wrench, 12)
-    subtract_2 = required_of_required - extend_1
-    take_3 = H_of_required[0:6]
+    subtract_2 = required - extend_1
+    take_3 = H[0:6]
     take_4 = subtract_2[0:6]
     solve_5 = _solve(take_3, take_4)
-    leg_force_of_legs, drive_of_legs = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
-    add_forces_6 = _with_forces(leg_force_of_legs, solve_5, drive_of_legs, [0, 1, 2, 3, 4, 5])
-    return (add_forces_6,)
+    leg_force, drive = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
+    forces = _with_forces(leg_force, solve_5, drive, [0, 1, 2, 3, 4, 5])
+    return (forces,)
 
 
 def _steps_energy(m, X, V):
-    M_of_M, = m.run(_run_M, ("M",), X)
+    M, = m.run(_run_M, ("M",), X)
     potential_of_potential, = m.run(_run_potential, ("potential",), X)
-    half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
-    entry_2 = potential_of_potential[0]
-    return (half_form_1, entry_2,)
+    kinetic = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M, V))
+    potential = potential_of_potential[0]
+    return (kinetic, potential,)
 
 
 def _steps_null_space(m, X):
-    H_of_H, = m.run(_run_H, ("H",), X)
-    null_basis_1 = _null_basis(H_of_H, 6)
-    return (null_basis_1,)
+    H, = m.run(_run_H, ("H",), X)
+    basis = _null_basis(H, 6)
+    return (basis,)
 
 
 def _steps_condition(m, X, length):
-    (
-    H_of_condition, lengths_of_condition, pivots_of_condition, reach_of_condition,
-    ) = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
-    choose_length_1 = _chosen_length(lengths_of_condition, length)
-    divide_rows_2 = _rows_divided(H_of_condition, choose_length_1, [3, 4, 5, 6, 7, 8, 9, 10, 11])
-    singular_values_3 = _singular_values(divide_rows_2)
-    return (singular_values_3, pivots_of_condition,)
+    H, lengths, legs, reach = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
+    choose_length_1 = _chosen_length(lengths, length)
+    divide_rows_2 = _rows_divided(H, choose_length_1, [3, 4, 5, 6, 7, 8, 9, 10, 11])
+    sigma = _singular_values(divide_rows_2)
+    return (sigma, legs,)
 
 
 def _steps_mismatch(m, X, q_actuated):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
-    take_1 = q_of_inverse_kinematics[[3, 7, 11, 15, 19, 23]]
-    subtract_2 = q_actuated - take_1
-    return (subtract_2,)
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    take_1 = q[[3, 7, 11, 15, 19, 23]]
+    gap = q_actuated - take_1
+    return (gap,)
 
 
 def _steps_slope(m, X):
-    H_of_H, = m.run(_run_H, ("H",), X)
-    return (H_of_H,)
+    slope, = m.run(_run_H, ("H",), X)
+    return (slope,)
 
 
 def _steps_forward_kinematics(m, q_actuated, X0):
-    X_found = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
-    return (X_found,)
+    X = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    return (X,)
 
 
 def _steps_rotation(m, X):
     take_1 = X[3:7]
-    rotation_of_quaternion_2 = _rotation_of_quaternion(take_1)
-    return (rotation_of_quaternion_2,)
+    R = _rotation_of_quaternion(take_1)
+    return (R,)
 
 
 def _steps_pose(m, t, R):
     quaternion_of_rotation_1 = _quaternion_of_rotation(R)
     join_2 = np.concatenate((t, quaternion_of_rotation_1))
-    extend_3 = _extended(join_2, 13)
-    return (extend_3,)
+    X = _extended(join_2, 13)
+    return (X,)
 
 
 def _steps_X_dot(m, X, V):
@@ -4258,15 +4256,15 @@ def _steps_X_dot(m, X, V):
     take_4 = V[0:3]
     join_5 = np.concatenate((take_4, quaternion_rate_3))
     take_6 = V[6:12]
-    join_7 = np.concatenate((join_5, take_6))
-    return (join_7,)
+    X_dot = np.concatenate((join_5, take_6))
+    return (X_dot,)
 
 
 def _steps_pose_from_rpy(m, t, rpy):
     quaternion_of_rpy_1 = _quaternion_of_rpy(rpy)
     join_2 = np.concatenate((t, quaternion_of_rpy_1))
-    extend_3 = _extended(join_2, 13)
-    return (extend_3,)
+    X = _extended(join_2, 13)
+    return (X,)
 
 
 def M(X, p=None):

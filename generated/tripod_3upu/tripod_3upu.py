@@ -861,7 +861,7 @@ class _Floats:
     cos = staticmethod(lambda x: float(np.cos(x)))
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
     least = staticmethod(lambda x, y: float(np.minimum(x, y)))
-    every = staticmethod(lambda good: good)
+    every = staticmethod(lambda leg, good: good)
 
     def __init__(self, p, states):
         self.p, self.states = p, states
@@ -908,9 +908,9 @@ class _Arrays:
     def zeros(self, name):
         return np.zeros((math.prod(_SHAPES[name]), self.states))
 
-    def every(self, good):
+    def every(self, legs, good):
         """Whether it holds for all legs."""
-        return np.logical_and.reduce(good, axis=0)
+        return np.logical_and.reduce(np.broadcast_to(good, (legs.stop, self.states)), axis=0)
 
     def added(self, sums, legs, terms):
         """Sums over the legs, all at once."""
@@ -1911,10 +1911,10 @@ def _run_dynamics(m, X, V):
         # (M11) part of the constraint's second derivative that does not hold the acceleration
         gamma_c1 = nu_1 - n_c_z*rel_o_z
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-volume_c_t) > _TOLERANCE *
-            0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8) & (abs(w_1_t_3) > _TOLERANCE *
-            0.8))
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-volume_c_t) >
+            _TOLERANCE * 0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8) & (abs(w_1_t_3) >
+            _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
         Q_t_12, Q_t_13, Q_t_14, Q_t_16, Q_t_17, Q_t_19, M_ta_t_12, M_ta_t_13, M_ta_t_14,
@@ -2423,10 +2423,10 @@ def _run_M(m, X):
             d0_c_in_base_z_4*q_in_base_x - d_G_m1_in_base_x*n_m1_in_base_z*q_in_base_y
         )
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-volume_c_t) > _TOLERANCE *
-            0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8) & (abs(w_1_t_3) > _TOLERANCE *
-            0.8))
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-volume_c_t) >
+            _TOLERANCE * 0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8) & (abs(w_1_t_3) >
+            _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
         Q_t_12, Q_t_13, Q_t_14, Q_t_16, Q_t_17, Q_t_19, M_ta_t_12, M_ta_t_13, M_ta_t_14,
@@ -2855,10 +2855,10 @@ def _run_Z(m, X, V):
             - U_in_base_x*q_in_base_y
         )
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-volume_c_t) > _TOLERANCE *
-            0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8) & (abs(w_1_t_3) > _TOLERANCE *
-            0.8))
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-volume_c_t) >
+            _TOLERANCE * 0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8) & (abs(w_1_t_3) >
+            _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
         U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,
@@ -2998,8 +2998,9 @@ def _run_H(m, X):
         H_a_3_t_2 = axis_x_upu_axes2_x*q_in_base_z - axis_x_upu_axes2_z*q_in_base_x
         H_a_3_t_3 = axis_x_upu_axes2_y*q_in_base_x - axis_x_upu_axes2_x*q_in_base_y
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8))
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(root_2) >
+            _TOLERANCE * 0.8))
         )
         out_H[_H_upu[0][leg]] = axis_x_upu_axes2_x
         out_H[_H_upu[1][leg]] = axis_x_upu_axes2_y
@@ -3163,9 +3164,9 @@ def _run_Hk(m, X):
             axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x) - n_c_t_2*q_in_base_x
         )
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-volume_c_t) > _TOLERANCE *
-            0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8))
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-volume_c_t) >
+            _TOLERANCE * 0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8))
         )
         out_Hk[_Hk_upu[0][leg]] = -n_c_t
         out_Hk[_Hk_upu[1][leg]] = -n_c_t_2
@@ -3400,10 +3401,10 @@ def _run_constraint_bias(m, X, V):
         # (M11) part of the constraint's second derivative that does not hold the acceleration
         gamma_c1 = nu_1 - n_c_z*rel_o_z
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-volume_c_t) > _TOLERANCE *
-            0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8) & (abs(w_1_t_3) > _TOLERANCE *
-            0.8))
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-volume_c_t) >
+            _TOLERANCE * 0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8) & (abs(w_1_t_3) >
+            _TOLERANCE * 0.8))
         )
         out_constraint_bias[_constraint_bias_upu[0][leg]] = gamma_c1
     return ok, (out_constraint_bias,)
@@ -3843,10 +3844,10 @@ def _run_required(m, X, V, A):
             c_in_base_x*q_in_base_y
         )
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-volume_c_t) > _TOLERANCE *
-            0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8) & (abs(w_1_t_3) > _TOLERANCE *
-            0.8))
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-volume_c_t) >
+            _TOLERANCE * 0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8) & (abs(w_1_t_3) >
+            _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
         c_in_base_x, c_in_base_y, c_in_base_z, R_a_t, R_a_t_2, R_a_t_3,
@@ -3966,8 +3967,8 @@ def _run_inverse_kinematics(m, X):
         # (upu-K17) displacement of joint 2
         q_2 = atan2(-inv_root_2*xi_1_t, inv_root_2*root_1)
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001))
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
         )
         out_q[_q_upu[0][leg]] = q_1
         out_q[_q_upu[1][leg]] = q_2
@@ -4156,10 +4157,10 @@ def _run_joint_rates(m, X, V):
         )
         qd_1_t_3 = qd_1_t_2/w_1_t_3
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-volume_c_t) > _TOLERANCE *
-            0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8) & (abs(w_1_t_3) > _TOLERANCE *
-            0.8))
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-volume_c_t) >
+            _TOLERANCE * 0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8) & (abs(w_1_t_3) >
+            _TOLERANCE * 0.8))
         )
         out_qd[_qd_upu[0][leg]] = qd_1_t_3
         out_qd[_qd_upu[1][leg]] = qd_1_t
@@ -4425,10 +4426,10 @@ def _run_joint_accelerations(m, X, V, A):
         )
         qdd_1_t_2 = inv_w_1_t_25*(rel_z + etad_1*n_c_z)
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-volume_c_t) > _TOLERANCE *
-            0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8) & (abs(w_1_t_3) > _TOLERANCE *
-            0.8))
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-volume_c_t) >
+            _TOLERANCE * 0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8) & (abs(w_1_t_3) >
+            _TOLERANCE * 0.8))
         )
         out_qdd[_qdd_upu[0][leg]] = qdd_1_t_2
         out_qdd[_qdd_upu[1][leg]] = qdd_1_t
@@ -4525,7 +4526,7 @@ def _run_constraints(m, X):
         inv_root_1 = 1.0/root_1
         # (upu-V5) direction 1 of the moment that the platform joint transmits
         end_p1_r1_x = end_p1_r0_y*inv_root_1*px_1 - end_p1_r0_x*inv_root_1*py_1
-        ok = ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
+        ok = ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
         out_constraints[_constraints_upu[0][leg]] = -end_p1_r1_x
     return ok, (out_constraints,)
 
@@ -4879,10 +4880,10 @@ def _run_legs(m, X, V, A):
         c_m_in_base_y = G_m_x*axis_x_upu_axes2_y - G_m_y*axis_y_upu_axes2_in_base_y
         c_m_in_base_z = G_m_x*axis_x_upu_axes2_z - G_m_y*axis_y_upu_axes2_in_base_z
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-volume_c_t) > _TOLERANCE *
-            0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8) & (abs(w_1_t_3) > _TOLERANCE *
-            0.8))
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-volume_c_t) >
+            _TOLERANCE * 0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8) & (abs(w_1_t_3) >
+            _TOLERANCE * 0.8))
         )
         out_leg_force[_leg_force_upu[0][leg]] = c_in_base_x
         out_leg_force[_leg_force_upu[1][leg]] = c_in_base_y
@@ -5011,8 +5012,8 @@ def _run_potential(m, X):
             b_r3_y*upu_link2_mass - b_r3_y*upu_link3_mass)
         )
         ok = (
-        ok & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001))
+        ok & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
         )
         sums = m.added(sums, leg, (
         potential_t_2,
@@ -5222,7 +5223,7 @@ def _run_condition(m, X):
             1.5624999999999998*pivot_size_3), 1.25*pivot_size_4), 1.25*pivot_size_5)
         )
         clear = (
-        clear & m.every((abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+        clear & m.every(leg, (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-volume_c_t) >
             _TOLERANCE * 0.6400000000000001) & (abs(root_2) > _TOLERANCE * 0.8) & (abs(w_1_t_3) >
             _TOLERANCE * 0.8))
@@ -5255,193 +5256,187 @@ _DEFAULT = Parameters()
 
 
 def _steps_M(m, X):
-    M_of_M, = m.run(_run_M, ("M",), X)
-    return (M_of_M,)
+    M, = m.run(_run_M, ("M",), X)
+    return (M,)
 
 
 def _steps_Z(m, X, V):
-    Z_of_Z, = m.run(_run_Z, ("Z",), X, V)
-    return (Z_of_Z,)
+    Z, = m.run(_run_Z, ("Z",), X, V)
+    return (Z,)
 
 
 def _steps_H(m, X):
-    H_of_H, = m.run(_run_H, ("H",), X)
-    return (H_of_H,)
+    H, = m.run(_run_H, ("H",), X)
+    return (H,)
 
 
 def _steps_Hk(m, X):
-    Hk_of_Hk, = m.run(_run_Hk, ("Hk",), X)
-    return (Hk_of_Hk,)
+    Hk, = m.run(_run_Hk, ("Hk",), X)
+    return (Hk,)
 
 
 def _steps_constraints(m, X):
-    constraints_of_constraints, = m.run(_run_constraints, ("constraints",), X)
-    return (constraints_of_constraints,)
+    constraints, = m.run(_run_constraints, ("constraints",), X)
+    return (constraints,)
 
 
 def _steps_constraint_bias(m, X, V):
-    constraint_bias_of_constraint_bias, = m.run(_run_constraint_bias, ("constraint_bias",), X, V)
-    return (constraint_bias_of_constraint_bias,)
+    constraint_bias, = m.run(_run_constraint_bias, ("constraint_bias",), X, V)
+    return (constraint_bias,)
 
 
 def _steps_inverse_kinematics(m, X):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
-    return (q_of_inverse_kinematics,)
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    return (q,)
 
 
 def _steps_joint_rates(m, X, V):
-    qd_of_joint_rates, = m.run(_run_joint_rates, ("qd",), X, V)
-    return (qd_of_joint_rates,)
+    qd, = m.run(_run_joint_rates, ("qd",), X, V)
+    return (qd,)
 
 
 def _steps_joint_accelerations(m, X, V, A):
-    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
-    return (qdd_of_joint_accelerations,)
+    qdd, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
+    return (qdd,)
 
 
 def _steps_dynamics(m, X, V):
     (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics, Hk_of_dynamics, constraint_bias_of_dynamics,
+    M, Z, H, Hk, constraint_bias,
     ) = m.run(_run_dynamics, ("M", "Z", "H", "Hk", "constraint_bias"), X, V)
-    return (M_of_dynamics, Z_of_dynamics, H_of_dynamics,)
+    return (M, Z, H,)
 
 
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
-    (
-    required_of_required, H_of_required, Hk_of_required,
-    ) = m.run(_run_required, ("required", "H", "Hk"), X, V, A)
+    required, H, Hk = m.run(_run_required, ("required", "H", "Hk"), X, V, A)
     extend_1 = wrench
-    subtract_2 = required_of_required - extend_1
-    beside_3 = np.concatenate((H_of_required, Hk_of_required), axis=1)
+    subtract_2 = required - extend_1
+    beside_3 = np.concatenate((H, Hk), axis=1)
     solve_4 = _solve(beside_3, subtract_2)
-    split_5, split_6 = solve_4[:3], solve_4[3:]
-    return (split_5, split_6,)
+    tau, lambda_ = solve_4[:3], solve_4[3:]
+    return (tau, lambda_,)
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
     (
-    M_of_dynamics, Z_of_dynamics, H_of_dynamics, Hk_of_dynamics, constraint_bias_of_dynamics,
+    M, Z, H, Hk, constraint_bias,
     ) = m.run(_run_dynamics, ("M", "Z", "H", "Hk", "constraint_bias"), X, V)
-    times_1 = np.einsum("ijs,js->is", H_of_dynamics, tau)
+    times_1 = np.einsum("ijs,js->is", H, tau)
     extend_2 = wrench
     add_3 = times_1 + extend_2
-    subtract_4 = add_3 - Z_of_dynamics
-    negative_5 = -constraint_bias_of_dynamics
+    subtract_4 = add_3 - Z
+    negative_5 = -constraint_bias
     join_6 = np.concatenate((subtract_4, negative_5))
-    saddle_7 = _saddle(M_of_dynamics, Hk_of_dynamics)
+    saddle_7 = _saddle(M, Hk)
     solve_8 = _solve(saddle_7, join_6)
-    split_9, split_10 = solve_8[:6], solve_8[6:]
-    return (split_9, split_10,)
+    A, lambda_ = solve_8[:6], solve_8[6:]
+    return (A, lambda_,)
 
 
 def _steps_complete_acceleration(m, X, V, A, wrench):
-    same_1 = A
-    return (same_1,)
+    completed = A
+    return (completed,)
 
 
 def _steps_leg_reactions(m, X, V, A, wrench):
-    (
-    required_of_required, H_of_required, Hk_of_required,
-    ) = m.run(_run_required, ("required", "H", "Hk"), X, V, A)
+    required, H, Hk = m.run(_run_required, ("required", "H", "Hk"), X, V, A)
     extend_1 = wrench
-    subtract_2 = required_of_required - extend_1
-    beside_3 = np.concatenate((H_of_required, Hk_of_required), axis=1)
+    subtract_2 = required - extend_1
+    beside_3 = np.concatenate((H, Hk), axis=1)
     solve_4 = _solve(beside_3, subtract_2)
     split_5, split_6 = solve_4[:3], solve_4[3:]
     (
-    leg_force_of_legs, drive_of_legs, constraint_direction_of_legs,
+    leg_force, drive, constraint_direction,
     ) = m.run(_run_legs, ("leg_force", "drive", "constraint_direction"), X, V, A)
-    add_forces_7 = _with_forces(leg_force_of_legs, split_5, drive_of_legs, [0, 1, 2])
-    add_forces_8 = _with_forces(add_forces_7, split_6, constraint_direction_of_legs, [0, 1, 2])
-    return (add_forces_8,)
+    add_forces_7 = _with_forces(leg_force, split_5, drive, [0, 1, 2])
+    forces = _with_forces(add_forces_7, split_6, constraint_direction, [0, 1, 2])
+    return (forces,)
 
 
 def _steps_energy(m, X, V):
-    M_of_M, = m.run(_run_M, ("M",), X)
+    M, = m.run(_run_M, ("M",), X)
     potential_of_potential, = m.run(_run_potential, ("potential",), X)
-    half_form_1 = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M_of_M, V))
-    entry_2 = potential_of_potential[0]
-    return (half_form_1, entry_2,)
+    kinetic = 0.5 * np.einsum("is,is->s", V, np.einsum("ijs,js->is", M, V))
+    potential = potential_of_potential[0]
+    return (kinetic, potential,)
 
 
 def _steps_null_space(m, X):
-    H_of_H, = m.run(_run_H, ("H",), X)
-    null_basis_1 = _null_basis(H_of_H, 3)
-    return (null_basis_1,)
+    H, = m.run(_run_H, ("H",), X)
+    basis = _null_basis(H, 3)
+    return (basis,)
 
 
 def _steps_condition(m, X, length):
     (
-    H_of_condition, Hk_of_condition, lengths_of_condition, pivots_of_condition,
-        reach_of_condition,
+    H, Hk, lengths, legs, reach,
     ) = m.run(_run_condition, ("H", "Hk", "lengths", "pivots", "reach"), X)
-    choose_length_1 = _chosen_length(lengths_of_condition, length)
-    divide_rows_2 = _rows_divided(H_of_condition, choose_length_1, [3, 4, 5])
-    singular_values_3 = _singular_values(divide_rows_2)
-    return (singular_values_3, pivots_of_condition,)
+    choose_length_1 = _chosen_length(lengths, length)
+    divide_rows_2 = _rows_divided(H, choose_length_1, [3, 4, 5])
+    sigma = _singular_values(divide_rows_2)
+    return (sigma, legs,)
 
 
 def _steps_condition_constrained(m, X, length):
     (
-    H_of_condition, Hk_of_condition, lengths_of_condition, pivots_of_condition,
-        reach_of_condition,
+    H, Hk, lengths, legs, reach,
     ) = m.run(_run_condition, ("H", "Hk", "lengths", "pivots", "reach"), X)
-    beside_1 = np.concatenate((H_of_condition, Hk_of_condition), axis=1)
-    choose_length_2 = _chosen_length(lengths_of_condition, length)
+    beside_1 = np.concatenate((H, Hk), axis=1)
+    choose_length_2 = _chosen_length(lengths, length)
     divide_rows_3 = _rows_divided(beside_1, choose_length_2, [3, 4, 5])
-    singular_values_4 = _singular_values(divide_rows_3)
-    return (singular_values_4, pivots_of_condition,)
+    sigma = _singular_values(divide_rows_3)
+    return (sigma, legs,)
 
 
 def _steps_mismatch(m, X, q_actuated):
-    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
-    take_1 = q_of_inverse_kinematics[[2, 5, 8]]
+    q, = m.run(_run_inverse_kinematics, ("q",), X)
+    take_1 = q[[2, 5, 8]]
     subtract_2 = q_actuated - take_1
-    constraints_of_constraints, = m.run(_run_constraints, ("constraints",), X)
-    negative_3 = -constraints_of_constraints
-    join_4 = np.concatenate((subtract_2, negative_3))
-    return (join_4,)
+    constraints, = m.run(_run_constraints, ("constraints",), X)
+    negative_3 = -constraints
+    gap = np.concatenate((subtract_2, negative_3))
+    return (gap,)
 
 
 def _steps_slope(m, X):
-    H_of_H, = m.run(_run_H, ("H",), X)
-    Hk_of_Hk, = m.run(_run_Hk, ("Hk",), X)
-    beside_1 = np.concatenate((H_of_H, Hk_of_Hk), axis=1)
-    return (beside_1,)
+    H, = m.run(_run_H, ("H",), X)
+    Hk, = m.run(_run_Hk, ("Hk",), X)
+    slope = np.concatenate((H, Hk), axis=1)
+    return (slope,)
 
 
 def _steps_forward_kinematics(m, q_actuated, X0):
-    X_found = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
-    return (X_found,)
+    X = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    return (X,)
 
 
 def _steps_constraint_gap(m, X):
-    constraints_of_constraints, = m.run(_run_constraints, ("constraints",), X)
-    negative_1 = -constraints_of_constraints
-    return (negative_1,)
+    constraints, = m.run(_run_constraints, ("constraints",), X)
+    gap = -constraints
+    return (gap,)
 
 
 def _steps_constraint_slope(m, X):
-    Hk_of_Hk, = m.run(_run_Hk, ("Hk",), X)
-    return (Hk_of_Hk,)
+    slope, = m.run(_run_Hk, ("Hk",), X)
+    return (slope,)
 
 
 def _steps_project(m, X):
-    X_found = _search(m, _steps_constraint_gap, _steps_constraint_slope, X, (), (), False)
-    return (X_found,)
+    projected = _search(m, _steps_constraint_gap, _steps_constraint_slope, X, (), (), False)
+    return (projected,)
 
 
 def _steps_rotation(m, X):
     take_1 = X[3:7]
-    rotation_of_quaternion_2 = _rotation_of_quaternion(take_1)
-    return (rotation_of_quaternion_2,)
+    R = _rotation_of_quaternion(take_1)
+    return (R,)
 
 
 def _steps_pose(m, t, R):
     quaternion_of_rotation_1 = _quaternion_of_rotation(R)
     join_2 = np.concatenate((t, quaternion_of_rotation_1))
-    extend_3 = join_2
-    return (extend_3,)
+    X = join_2
+    return (X,)
 
 
 def _steps_X_dot(m, X, V):
@@ -5449,15 +5444,15 @@ def _steps_X_dot(m, X, V):
     take_2 = X[3:7]
     quaternion_rate_3 = _quaternion_rate(take_2, take_1)
     take_4 = V[0:3]
-    join_5 = np.concatenate((take_4, quaternion_rate_3))
-    return (join_5,)
+    X_dot = np.concatenate((take_4, quaternion_rate_3))
+    return (X_dot,)
 
 
 def _steps_pose_from_rpy(m, t, rpy):
     quaternion_of_rpy_1 = _quaternion_of_rpy(rpy)
     join_2 = np.concatenate((t, quaternion_of_rpy_1))
-    extend_3 = join_2
-    return (extend_3,)
+    X = join_2
+    return (X,)
 
 
 def M(X, p=None):
