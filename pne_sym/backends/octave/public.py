@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import textwrap
 from collections.abc import Iterable
 
 from pne_sym.backends.octave.text import MatlabText, column, define, indices
@@ -166,6 +167,8 @@ class Public(MatlabText):
         yield "%"
         yield f"%   [{outputs}] = {self.bundle.name}.{function.name}({', '.join(names)})"
         yield "%"
+        for note in function.notes:
+            yield from (f"%   {line}" for line in textwrap.wrap(note, 92))
         for a in function.required:
             yield f"%   {a.name} ({_shape(a)}): {a.meaning}."
         if function.needs_model:

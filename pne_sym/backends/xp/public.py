@@ -85,6 +85,7 @@ def public_text(function: PublicFunction) -> str:
     lines = [
         f'"""{function.meaning}',
         "",
+        *(line for note in function.notes for line in (*textwrap.wrap(note, 92), "")),
         "Args:",
         *(f"    {a.name}: {a.meaning} ({_shape(a)})." for a in function.inputs),
         *["    p: parameters, by default those of the specification."] * function.needs_model,
