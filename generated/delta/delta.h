@@ -91,7 +91,8 @@ typedef struct {
     delta_real rus_link3_inertia[3][3][3];
 } delta_params;
 
-/* What depends on the parameters alone; set by delta_prepare, then only read. */
+/* What depends on the parameters alone; set by delta_prepare, then only read.  Its size is
+   public; its members are private, their names and order may change. */
 typedef struct {
     delta_real Z_p_x, Z_p_y, Z_p_z, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z, h_star_x,
             h_star_y, h_star_z, legs_size, m_star, spread_t;

@@ -87,7 +87,8 @@ typedef struct {
     fivebar_prismatic_real rpr_link2_inertia[2][3][3];
 } fivebar_prismatic_params;
 
-/* What depends on the parameters alone; set by fivebar_prismatic_prepare, then only read. */
+/* What depends on the parameters alone; set by fivebar_prismatic_prepare, then only read.  Its size is
+   public; its members are private, their names and order may change. */
 typedef struct {
     fivebar_prismatic_real Z_p_x, Z_p_y, b_c_x, b_c_y, gravity_x, gravity_y, h_star_x, h_star_y,
             legs_size, m_star, spread_t;

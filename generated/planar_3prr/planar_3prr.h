@@ -89,7 +89,8 @@ typedef struct {
     planar_3prr_real prr_link2_inertia[3][3][3];
 } planar_3prr_params;
 
-/* What depends on the parameters alone; set by planar_3prr_prepare, then only read. */
+/* What depends on the parameters alone; set by planar_3prr_prepare, then only read.  Its size is
+   public; its members are private, their names and order may change. */
 typedef struct {
     planar_3prr_real J_star_t_10, J_star_zz, Z_p_t, Z_p_t_2, b_c_x, b_c_y, gravity_x, gravity_y,
             h_star_x, h_star_y, legs_size, m_star, spread_t;

@@ -110,7 +110,8 @@ typedef struct {
     quadrupod_real up_link3_inertia[1][3][3];
 } quadrupod_params;
 
-/* What depends on the parameters alone; set by quadrupod_prepare, then only read. */
+/* What depends on the parameters alone; set by quadrupod_prepare, then only read.  Its size is
+   public; its members are private, their names and order may change. */
 typedef struct {
     quadrupod_real J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
             J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,

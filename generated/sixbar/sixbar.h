@@ -113,7 +113,8 @@ typedef struct {
     sixbar_real rrr2_link2_inertia[1][3][3];
 } sixbar_params;
 
-/* What depends on the parameters alone; set by sixbar_prepare, then only read. */
+/* What depends on the parameters alone; set by sixbar_prepare, then only read.  Its size is
+   public; its members are private, their names and order may change. */
 typedef struct {
     sixbar_real J_star_t_14, J_star_zz, Z_p_t, Z_p_t_2, b_c_x, b_c_y, gravity_x, gravity_y, h_star_x,
             h_star_y, legs_size, m_star;

@@ -92,7 +92,8 @@ typedef struct {
     spherical_3ups_real ups_link3_inertia[3][3][3];
 } spherical_3ups_params;
 
-/* What depends on the parameters alone; set by spherical_3ups_prepare, then only read. */
+/* What depends on the parameters alone; set by spherical_3ups_prepare, then only read.  Its size is
+   public; its members are private, their names and order may change. */
 typedef struct {
     spherical_3ups_real J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy,
             J_star_yz, J_star_zz, b_c_x, b_c_y, b_c_z, fixed_centre_x, fixed_centre_y, fixed_centre_z,

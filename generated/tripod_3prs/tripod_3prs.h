@@ -92,7 +92,8 @@ typedef struct {
     tripod_3prs_real prs_link2_inertia[3][3][3];
 } tripod_3prs_params;
 
-/* What depends on the parameters alone; set by tripod_3prs_prepare, then only read. */
+/* What depends on the parameters alone; set by tripod_3prs_prepare, then only read.  Its size is
+   public; its members are private, their names and order may change. */
 typedef struct {
     tripod_3prs_real J_star_t_6, J_star_t_8, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
             J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,

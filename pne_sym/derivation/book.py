@@ -85,7 +85,6 @@ class Book:
         forms: Sequence[Any] = (),
         linear: LinearForm | None = None,
         expanded: Any = None,
-        note: str = "",
         conditions: Sequence[Condition] = (),
         symmetric: bool = False,
         parameter: bool = False,
@@ -129,7 +128,6 @@ class Book:
                 forms=tuple(forms),
                 steps=linear.steps if linear else (),
                 expanded=expanded,
-                note=note,
                 conditions=tuple(conditions),
             )
         )

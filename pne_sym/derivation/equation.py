@@ -183,7 +183,6 @@ class Equation:
         forms: further expressions of the same value that may lower better.
         steps: uses of Rules I and II that lead to the right-hand side.
         expanded: what stood before Rules I and II were used.
-        note: a remark for the reader.
         conditions: what must hold for the equation to be usable.
     """
 
@@ -196,7 +195,6 @@ class Equation:
     forms: tuple[Any, ...] = ()
     steps: tuple[RuleApplication, ...] = ()
     expanded: Any = None
-    note: str = ""
     conditions: tuple[Condition, ...] = ()
 
     @property

@@ -139,9 +139,6 @@ class Lowering:
         costs = [self.trials.attempt(partial(self._any, forms[0], f)).cost for f in frames]
         return frames[costs.index(min(costs))]
 
-    def _all(self, vectors: Sequence[Any], frame: str) -> list[Triple]:
-        return [self.vector(v, frame) for v in vectors]
-
     def _any(self, expr: Any, frame: str) -> Any:
         return self.vector(expr, frame) if isinstance(expr, n.Vector) else self.tensor(expr, frame)
 

@@ -195,7 +195,6 @@ class PlatformWriter:
     def _required(self) -> None:
         """What H tau plus the external wrench must equal."""
         book = self.book
-        components = self.space.components
         if self.n_newton is not None:
             force = book.define(
                 "R_t",
@@ -225,7 +224,6 @@ class PlatformWriter:
                 reference="Eq. 33",
             )
             self._vector_output("required", moment, 3)
-        del components
         for leg, j, rows in self._extras():
             self._leg_scalar("required", leg, leg.dynamics.extra_rows[j][0], rows)
 

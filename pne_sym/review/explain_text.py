@@ -121,8 +121,6 @@ def explanation(told: Explanation) -> Iterator[str]:
     reference = f"; {equation.reference}" if equation.reference else ""
     yield f"  law:   {equation.law.value}{reference}"
     yield f"  LaTeX: {told.latex}"
-    if equation.note:
-        yield from _hanging("  note:  ", equation.note)
     for condition in equation.conditions:
         must = ">= 0" if condition.trouble.value == "unreachable" else "not near 0"
         yield f"  {condition.trouble.value} unless {plain(condition.value)} is {must}"

@@ -126,8 +126,6 @@ class ChapterWriter:
                     t.signed(first=k == 0) for k, t in enumerate(terms)
                 )
                 yield f"Collected by Rules I and II: {inline(text)}."
-        if equation.note:
-            yield equation.note
         if any(b.rows and b.duals[0] == equation.lhs for b in self.derivation.bases):
             yield SCREWS
         for condition in equation.conditions:
