@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import os
+import re
 import shutil
 import subprocess
+from collections import Counter
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -56,13 +60,37 @@ def test_the_driver_calls_every_function_in_both_ways(analysis: str, tmp_path: P
     for function in model.functions:
         for call in (f"{model.name}_{function.name}(", f"{model.name}_{function.name}_batch("):
             assert (call in text) == (function.name not in left_out)
-    (tmp_path / "__fc_builtin.h").write_text(
+    compile_driver(text, tmp_path)
+
+
+def compile_driver(text: str, folder: Path, *options: str) -> None:
+    (folder / "__fc_builtin.h").write_text(
         "void Frama_C_make_unknown(char *p, unsigned long n);\n"
         "double Frama_C_double_interval(double low, double high);\n"
     )
-    (tmp_path / "driver.c").write_text(text)
-    command = ["gcc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-fsyntax-only"]
-    subprocess.run([*command, f"-I{FOLDER}", f"-I{tmp_path}", tmp_path / "driver.c"], check=True)
+    (folder / "driver.c").write_text(text)
+    command = ["gcc", "-std=c99", "-Wall", "-Wextra", "-Werror", *options, "-fsyntax-only"]
+    subprocess.run([*command, f"-I{FOLDER}", f"-I{folder}", folder / "driver.c"], check=True)
+
+
+@pytest.mark.parametrize("analysis", ["safety", "numbers"])
+def test_parts_are_all_that_the_driver_calls(analysis: str, tmp_path: Path) -> None:
+    model = read_header(FOLDER / "fivebar_revolute.h")
+    together = called(prove.driver(model, analysis))
+    apart = [called(prove.driver(model, analysis, [part])) for part in prove.parts(model, analysis)]
+    assert sum(apart, Counter()).keys() == together.keys()
+    left_out = prove.ITERATED if analysis == "numbers" else ()
+    assert len(together) == 1 + 2 * sum(f.name not in left_out for f in model.functions)
+    for part, calls in zip(prove.parts(model, analysis), apart, strict=True):
+        own = f"{part.function}_batch" if part.form == "batch" else part.function
+        assert calls.keys() - {"prepare"} == {own} - {"prepare"}
+    compile_driver(
+        prove.driver(model, analysis, [prove.Part("M", "batch")]), tmp_path, "-Wno-unused"
+    )
+
+
+def called(text: str) -> Counter[str]:
+    return Counter(re.findall(r"\bfivebar_revolute_(\w+)\(", text))
 
 
 @pytest.mark.parametrize(("ci", "code"), [("true", 1), ("", 0)])
@@ -73,6 +101,58 @@ def test_without_frama_c_nothing_is_proved(
     monkeypatch.setenv("CI", ci)
     assert prove.main([str(FOLDER.parent), "fivebar_revolute"]) == code
     assert "*** NOT RUN: prove" in capsys.readouterr().err
+
+
+def test_what_a_stopped_run_had_found_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    program = tmp_path / "frama-c"
+    stopped = LOG.replace("[eva] done for function main", "")
+    program.write_text(f"#!/bin/sh\ncat <<'END'\n{stopped}END\nexec sleep 60\n")
+    program.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
+    found, fault = prove.analyse(FOLDER, "safety", 1.0, [prove.Part("M", "state")])
+    assert found == prove.alarms(LOG)
+    assert fault == "no result within 1 s"
+
+
+@pytest.mark.parametrize(
+    ("fault", "told"),
+    [
+        (
+            "",
+            [
+                "M, state: no alarm",
+                "M, batch: no alarm",
+                "Z, state: no alarm",
+                "Z, batch: no alarm",
+            ],
+        ),
+        (
+            "no result within 9 s",
+            [
+                "M, state: no result within 9 s; until then no alarm",
+                "M, batch: not run, since one state has no result",
+                "Z, state: no alarm",
+                "Z, batch: no alarm",
+            ],
+        ),
+    ],
+)
+def test_functions_one_at_a_time(
+    fault: str, told: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def analyse(*arguments: Any) -> tuple[list[Alarm], str]:
+        return [], fault if arguments[-1] == (prove.Part("M", "state"),) else ""
+
+    monkeypatch.setattr(prove.shutil, "which", lambda _: "frama-c")
+    monkeypatch.setattr(prove, "analyse", analyse)
+    options = ["--each", "--analysis", "safety", "--only", "Z", "M"]
+    assert prove.main([str(FOLDER.parent), FOLDER.name, *options]) == bool(fault)
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.rsplit(", ", line.endswith(" s"))[0] for line in lines] == [
+        f"fivebar_revolute safety {line}" for line in told
+    ]
 
 
 ARM_H = """/* The arm.
