@@ -42,6 +42,11 @@ NUMBERS = ("-warn-special-float", "non-finite")
 # pivot equally long, and the analysis joins the two orders of rows into one that has no pivot.
 # What iterates is left out: intervals cannot follow its steps.
 BOX_POSE, BOX_OTHER = 1e-4, 1.0
+# Rotations, by their number of entries: the box is about these.
+ROTATIONS = {
+    "R": {4: "0.8, -0.6, 0.6, 0.8", 9: "2./3, -1./3, 2./3, 2./3, 2./3, -1./3, -1./3, 2./3, 2./3"},
+    "rpy": {3: "0.1, 0.2, 0.3"},
+}
 ITERATED = ("forward_kinematics", "project", "condition", "condition_constrained")
 
 # (analysis, text of the alarm) -> why it is none.
@@ -102,17 +107,20 @@ def driver(model: Interface, analysis: str, part: Part) -> str:
     return "\n".join(lines)
 
 
+_ARGUMENTS = [
+    "static void choose(double *x, size_t n, const double *at, double shift, double reach)", "{",
+]  # fmt: skip
 _CHOOSE = {
     "safety": [
-        "static void choose(double *x, size_t n, const double *home, double reach)", "{",
-        "    (void)home, (void)reach;",
+        *_ARGUMENTS,
+        "    (void)at, (void)shift, (void)reach;",
         "    Frama_C_make_unknown((char *)x, n*sizeof *x);", "}", "",
     ],
     "numbers": [
-        "static void choose(double *x, size_t n, const double *home, double reach)", "{",
+        *_ARGUMENTS,
         "    for (size_t k = 0; k < n; ++k) {",
-        "        const double centre = home ? home[k] + (k%2 ? -0.01 : 0.02)*(k + 1) : 0;",
-        "        x[k] = centre + Frama_C_double_interval(-reach, reach);",
+        "        const double beside = shift*(k%2 ? -0.01 : 0.02)*(k + 1);",
+        "        x[k] = (at ? at[k] + beside : 0) + Frama_C_double_interval(-reach, reach);",
         "    }", "}", "",
     ],
 }  # fmt: skip
@@ -140,14 +148,18 @@ def _caller(name: str, f: Function, form: str) -> list[str]:
 
 
 def _chosen(name: str, a: Array) -> list[str]:
-    homes = {"X": "HOME_X", "X0": "HOME_X", "q0": "HOME_Q"}
-    home = f"{name}_{homes[a.name]}" if a.name in homes else "NULL"
-    reach = BOX_POSE if a.name in homes else BOX_OTHER
     if a.positive:
-        return [f"    choose(in_{a.name}, {BATCH * a.size}, NULL, {reach});"]
+        return [f"    choose(in_{a.name}, {BATCH * a.size}, NULL, 0, {BOX_OTHER});"]
+    homes = {"X": "HOME_X", "X0": "HOME_X", "q0": "HOME_Q"}
+    if a.name in homes:
+        where = f"{name}_{homes[a.name]}, 1, {BOX_POSE}"
+    elif a.name in ROTATIONS:
+        where = f"(const double[]){{{ROTATIONS[a.name][a.size]}}}, 0, {BOX_POSE}"
+    else:
+        where = f"NULL, 0, {BOX_OTHER}"
     return [
         f"    for (size_t k = 0; k < {BATCH}; ++k) {{",
-        f"        choose(in_{a.name} + {a.size}*k, {a.size}, {home}, {reach});",
+        f"        choose(in_{a.name} + {a.size}*k, {a.size}, {where});",
         "    }",
     ]
 
