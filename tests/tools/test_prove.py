@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import subprocess
+from collections import Counter
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -48,21 +51,38 @@ def test_explanations_are_sentences() -> None:
     assert all(len(reason.split()) > 5 for reason in prove.EXPLAINED.values())
 
 
-@pytest.mark.parametrize("analysis", ["safety", "numbers"])
-def test_the_driver_calls_every_function_in_both_ways(analysis: str, tmp_path: Path) -> None:
-    model = read_header(FOLDER / "fivebar_revolute.h")
-    text = prove.driver(model, analysis)
-    left_out = prove.ITERATED if analysis == "numbers" else ()
-    for function in model.functions:
-        for call in (f"{model.name}_{function.name}(", f"{model.name}_{function.name}_batch("):
-            assert (call in text) == (function.name not in left_out)
-    (tmp_path / "__fc_builtin.h").write_text(
+def compile_driver(text: str, folder: Path) -> None:
+    (folder / "__fc_builtin.h").write_text(
         "void Frama_C_make_unknown(char *p, unsigned long n);\n"
         "double Frama_C_double_interval(double low, double high);\n"
     )
-    (tmp_path / "driver.c").write_text(text)
-    command = ["gcc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-fsyntax-only"]
-    subprocess.run([*command, f"-I{FOLDER}", f"-I{tmp_path}", tmp_path / "driver.c"], check=True)
+    (folder / "driver.c").write_text(text)
+    command = ["gcc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-Wno-unused", "-fsyntax-only"]
+    subprocess.run([*command, f"-I{FOLDER}", f"-I{folder}", folder / "driver.c"], check=True)
+
+
+@pytest.mark.parametrize("analysis", ["safety", "numbers"])
+def test_the_drivers_call_every_function_in_both_ways(analysis: str) -> None:
+    model = read_header(FOLDER / "fivebar_revolute.h")
+    calls = Counter[str]()
+    for part in prove.parts(model, analysis):
+        text = prove.driver(model, analysis, part)
+        calls.update(set(re.findall(r"\bfivebar_revolute_(\w+)\(", text)) - {"prepare"})
+    left_out = prove.ITERATED if analysis == "numbers" else ()
+    names = [function.name for function in model.functions if function.name not in left_out]
+    assert calls == Counter([*names, *(f"{name}_batch" for name in names)])
+
+
+@pytest.mark.parametrize("analysis", ["safety", "numbers"])
+@pytest.mark.parametrize("function", ["prepare", "inverse_dynamics"])
+def test_drivers_compile(analysis: str, function: str, tmp_path: Path) -> None:
+    model = read_header(FOLDER / "fivebar_revolute.h")
+    chosen = [part for part in prove.parts(model, analysis) if part.function == function]
+    for part in chosen:
+        compile_driver(prove.driver(model, analysis, part), tmp_path)
+    assert {part.form for part in chosen} >= {"state"}
+    prepared = prove.driver(model, analysis, prove.PREPARE)
+    assert ("_prepare(&params," in prepared) == (analysis == "safety")
 
 
 @pytest.mark.parametrize(("ci", "code"), [("true", 1), ("", 0)])
@@ -73,6 +93,69 @@ def test_without_frama_c_nothing_is_proved(
     monkeypatch.setenv("CI", ci)
     assert prove.main([str(FOLDER.parent), "fivebar_revolute"]) == code
     assert "*** NOT RUN: prove" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("log", "in_time", "told"),
+    [
+        (LOG.replace("[eva] done for function main", ""), False, "no result within 9 s"),
+        (LOG, True, "the function's end is not reached"),
+        ("[eva] driver.c:40: Frama_C_show_each_end:\n" + LOG, True, ""),
+    ],
+)
+def test_runs_that_stop_before_the_end_are_no_proofs(
+    log: str, in_time: bool, told: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def run(command: list[str], **_: object) -> subprocess.CompletedProcess[str]:
+        if in_time:
+            return subprocess.CompletedProcess(command, 0, log, "")
+        raise subprocess.TimeoutExpired(
+            command, 9, log.encode()
+        )  # bytes, although text is asked for
+
+    monkeypatch.setattr(prove.subprocess, "run", run)
+    found, fault = prove.analyse(FOLDER, "safety", prove.Part("M", "state"), 9.0)
+    assert found == prove.alarms(LOG)
+    assert fault == told
+
+
+@pytest.mark.parametrize(
+    ("fault", "told"),
+    [
+        (
+            "",
+            [
+                "M, state: no alarm",
+                "M, batch: no alarm",
+                "Z, state: no alarm",
+                "Z, batch: no alarm",
+            ],
+        ),
+        (
+            "no result within 9 s",
+            [
+                "M, state: no result within 9 s; no alarm",
+                "M, batch: not run, one state has no result",
+                "Z, state: no alarm",
+                "Z, batch: no alarm",
+            ],
+        ),
+    ],
+)
+def test_functions_one_at_a_time(
+    fault: str, told: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def analyse(*arguments: Any) -> tuple[list[Alarm], str]:
+        return [], fault if arguments[2] == prove.Part("M", "state") else ""
+
+    monkeypatch.setattr(prove.shutil, "which", lambda _: "frama-c")
+    monkeypatch.setattr(prove, "analyse", analyse)
+    options = ["--analysis", "safety", "--only", "Z", "M"]
+    assert prove.main([str(FOLDER.parent), FOLDER.name, *options]) == bool(fault)
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.rsplit(", ", line.endswith(" s"))[0] for line in lines] == [
+        f"fivebar_revolute safety {line}" for line in told
+    ]
 
 
 ARM_H = """/* The arm.
@@ -123,6 +206,11 @@ size_t arm_weight_batch(const arm_model *model, size_t n, const arm_real *X, arm
         ("X[0];", "X[9];", "out of bounds read"),
         ("i < n;", "i <= n;", "out of bounds"),
         ("model->mass*X[0]", "model->mass*X[0]/(X[0] - 1.02)", "non-finite double value"),
+        (
+            "weight[0] = model->mass*X[0]",
+            "weight[0] = 1/(0*X[0])",
+            "the function's end is not reached",
+        ),
         ("    weight[0] = model", "    double w;\n    weight[0] = w*model", "uninitialized"),
     ],
 )
