@@ -77,9 +77,7 @@ INLINE real total(const real *x, size_t n)
 
 INLINE void clear(real *x, size_t n)
 {
-    for (size_t i = 0; i < n; ++i) {
-        x[i] = 0;
-    }
+    memset(x, 0, n*sizeof *x);
 }
 
 INLINE int is_finite(real x)
@@ -725,8 +723,9 @@ static real least_norm(size_t rows, size_t columns, const real *a, const real *b
         }
         u[p] /= diagonal[p];
     }
-    for (size_t p = rows; p-- > 0;) {
-        for (size_t j = p + 1; j < rows; ++j) {
+    for (size_t left = rows; left > 0; --left) {
+        const size_t p = left - 1;
+        for (size_t j = left; j < rows; ++j) {
             u[p] -= t[p*rows + j]*u[j];
         }
         u[p] /= diagonal[p];
@@ -2655,7 +2654,7 @@ static int matrices(const prepared *m, const real *X, real *H, real *pivots)
 
 int fivebar_prismatic_condition(const prepared *m, const real *X, real *sigma, real *legs)
 {
-    real H[4], a[4], found[2], pivots[2];
+    real H[4], a[4], found[2] = {0}, pivots[2];
     const int code = matrices(m, X, H, pivots);
     if (code != FIVEBAR_PRISMATIC_OK) {
         refuse(2, sigma);

@@ -77,9 +77,7 @@ INLINE real total(const real *x, size_t n)
 
 INLINE void clear(real *x, size_t n)
 {
-    for (size_t i = 0; i < n; ++i) {
-        x[i] = 0;
-    }
+    memset(x, 0, n*sizeof *x);
 }
 
 INLINE int is_finite(real x)
@@ -859,8 +857,9 @@ static real least_norm(size_t rows, size_t columns, const real *a, const real *b
         }
         u[p] /= diagonal[p];
     }
-    for (size_t p = rows; p-- > 0;) {
-        for (size_t j = p + 1; j < rows; ++j) {
+    for (size_t left = rows; left > 0; --left) {
+        const size_t p = left - 1;
+        for (size_t j = left; j < rows; ++j) {
             u[p] -= t[p*rows + j]*u[j];
         }
         u[p] /= diagonal[p];
@@ -4657,7 +4656,7 @@ static int matrices(const prepared *m, const real *X, real *H, real *pivots)
 
 int hybrid_3prps_condition(const prepared *m, const real *X, real *sigma, real *legs)
 {
-    real H[36], a[36], found[6], pivots[3];
+    real H[36], a[36], found[6] = {0}, pivots[3];
     const int code = matrices(m, X, H, pivots);
     if (code != HYBRID_3PRPS_OK) {
         refuse(6, sigma);
@@ -4745,7 +4744,6 @@ int hybrid_3prps_X_dot(const real *X, const real *V, real *X_dot)
     found[4] = (p[3]*w[1] + w[2]*p[0] - w[0]*p[2])/2;
     found[5] = (p[3]*w[2] + w[0]*p[1] - w[1]*p[0])/2;
     found[6] = -(p[0]*w[0] + p[1]*w[1] + p[2]*w[2])/2;
-    memcpy(found + 7, V + 6, 0*sizeof *V);
     const int code = all_finite(X, 7) && all_finite(found, 7) ? HYBRID_3PRPS_OK : HYBRID_3PRPS_INVALID;
     deliver(found, 7, 1, &code, X_dot);
     return code;

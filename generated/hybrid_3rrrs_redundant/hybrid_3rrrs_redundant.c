@@ -77,9 +77,7 @@ INLINE real total(const real *x, size_t n)
 
 INLINE void clear(real *x, size_t n)
 {
-    for (size_t i = 0; i < n; ++i) {
-        x[i] = 0;
-    }
+    memset(x, 0, n*sizeof *x);
 }
 
 INLINE int is_finite(real x)
@@ -1422,8 +1420,9 @@ static real least_norm(size_t rows, size_t columns, const real *a, const real *b
         }
         u[p] /= diagonal[p];
     }
-    for (size_t p = rows; p-- > 0;) {
-        for (size_t j = p + 1; j < rows; ++j) {
+    for (size_t left = rows; left > 0; --left) {
+        const size_t p = left - 1;
+        for (size_t j = left; j < rows; ++j) {
             u[p] -= t[p*rows + j]*u[j];
         }
         u[p] /= diagonal[p];
@@ -11378,7 +11377,7 @@ static int matrices(const prepared *m, const real *X, real *H, real *pivots)
 
 int hybrid_3rrrs_redundant_condition(const prepared *m, const real *X, real *sigma, real *legs)
 {
-    real H[49], a[49], found[7], pivots[3];
+    real H[49], a[49], found[7] = {0}, pivots[3];
     const int code = matrices(m, X, H, pivots);
     if (code != HYBRID_3RRRS_REDUNDANT_OK) {
         refuse(7, sigma);

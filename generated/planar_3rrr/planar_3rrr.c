@@ -77,9 +77,7 @@ INLINE real total(const real *x, size_t n)
 
 INLINE void clear(real *x, size_t n)
 {
-    for (size_t i = 0; i < n; ++i) {
-        x[i] = 0;
-    }
+    memset(x, 0, n*sizeof *x);
 }
 
 INLINE int is_finite(real x)
@@ -813,8 +811,9 @@ static real least_norm(size_t rows, size_t columns, const real *a, const real *b
         }
         u[p] /= diagonal[p];
     }
-    for (size_t p = rows; p-- > 0;) {
-        for (size_t j = p + 1; j < rows; ++j) {
+    for (size_t left = rows; left > 0; --left) {
+        const size_t p = left - 1;
+        for (size_t j = left; j < rows; ++j) {
             u[p] -= t[p*rows + j]*u[j];
         }
         u[p] /= diagonal[p];
@@ -3666,7 +3665,7 @@ static int matrices(const prepared *m, const real *X, real *H, real *pivots)
 
 int planar_3rrr_condition(const prepared *m, const real *X, real *sigma, real *legs)
 {
-    real H[9], a[9], found[3], pivots[3];
+    real H[9], a[9], found[3] = {0}, pivots[3];
     const int code = matrices(m, X, H, pivots);
     if (code != PLANAR_3RRR_OK) {
         refuse(3, sigma);

@@ -77,9 +77,7 @@ INLINE real total(const real *x, size_t n)
 
 INLINE void clear(real *x, size_t n)
 {
-    for (size_t i = 0; i < n; ++i) {
-        x[i] = 0;
-    }
+    memset(x, 0, n*sizeof *x);
 }
 
 INLINE int is_finite(real x)
@@ -848,8 +846,9 @@ static real least_norm(size_t rows, size_t columns, const real *a, const real *b
         }
         u[p] /= diagonal[p];
     }
-    for (size_t p = rows; p-- > 0;) {
-        for (size_t j = p + 1; j < rows; ++j) {
+    for (size_t left = rows; left > 0; --left) {
+        const size_t p = left - 1;
+        for (size_t j = left; j < rows; ++j) {
             u[p] -= t[p*rows + j]*u[j];
         }
         u[p] /= diagonal[p];
@@ -4377,7 +4376,7 @@ static int matrices(const prepared *m, const real *X, real *H, real *pivots)
 
 int spherical_3ups_condition(const prepared *m, const real *X, real *sigma, real *legs)
 {
-    real H[9], a[9], found[3], pivots[3];
+    real H[9], a[9], found[3] = {0}, pivots[3];
     const int code = matrices(m, X, H, pivots);
     if (code != SPHERICAL_3UPS_OK) {
         refuse(3, sigma);
@@ -4465,7 +4464,6 @@ int spherical_3ups_X_dot(const real *X, const real *V, real *X_dot)
     found[1] = (p[3]*w[1] + w[2]*p[0] - w[0]*p[2])/2;
     found[2] = (p[3]*w[2] + w[0]*p[1] - w[1]*p[0])/2;
     found[3] = -(p[0]*w[0] + p[1]*w[1] + p[2]*w[2])/2;
-    memcpy(found + 4, V + 3, 0*sizeof *V);
     const int code = all_finite(X, 4) && all_finite(found, 4) ? SPHERICAL_3UPS_OK : SPHERICAL_3UPS_INVALID;
     deliver(found, 4, 1, &code, X_dot);
     return code;
