@@ -18,7 +18,7 @@ from pne_sym.model.manipulator import Manipulator
 from pne_sym.program.public import Argument, PublicFunction
 from tests import models
 from tests.backends.c_library import Array
-from tests.cli.program import pne_gen
+from tests.cli.program import HANG, pne_gen
 from tests.program.test_public import interpreter, spanned
 from tests.targets.modules import condition, vectors
 
@@ -61,7 +61,7 @@ def run(script: str, path: Path) -> str:
     with tempfile.TemporaryDirectory() as home:
         done = subprocess.run(
             [program, "--no-gui", "--norc", "--no-history", "--eval", lines],
-            capture_output=True, text=True, check=False, timeout=600,
+            capture_output=True, text=True, check=False, timeout=HANG,
             env={**os.environ, "HOME": home, "OMP_NUM_THREADS": "1"},
         )  # fmt: skip
     assert done.returncode == 0 and "warning" not in done.stderr, done.stderr  # noqa: PT018
