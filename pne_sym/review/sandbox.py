@@ -203,10 +203,10 @@ def _bubblewrap() -> list[str]:
         elif Path(folder).is_dir():
             arguments += ["--ro-bind", folder, folder]
     arguments += ["--ro-bind-try", "/etc/ld.so.cache", "/etc/ld.so.cache"]
-    for folder in _python_folders():
+    arguments += ["--proc", "/proc", "--dev", "/dev", "--size", str(FILE_BYTES), "--tmpfs", "/tmp"]  # noqa: S108
+    for folder in _python_folders():  # which may be in /tmp
         arguments += ["--ro-bind", folder, folder]
-    size = str(FILE_BYTES)
-    return [*arguments, "--proc", "/proc", "--dev", "/dev", "--size", size, "--tmpfs", "/tmp"]  # noqa: S108
+    return arguments
 
 
 def _python_folders() -> list[str]:
