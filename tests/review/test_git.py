@@ -12,6 +12,7 @@ import pytest
 from tests.cli.program import HANG, PROGRAM, pne_gen
 from tests.cli.test_diff import git, heavier
 from tests.cli.test_generate import own_spec
+from tests.sampling import sampled
 
 ROOT = Path(__file__).parents[2]
 GUIDE = (ROOT / "docs/code-review.md").read_text()
@@ -61,7 +62,7 @@ def repository(tmp_path: Path) -> Path:
     return tmp_path
 
 
-@pytest.mark.parametrize("recipe", ["command", "textconv"])
+@pytest.mark.parametrize("recipe", sampled(["textconv", "command"], 2))
 def test_the_diff_driver(recipe: str, repository: Path) -> None:
     command = re.search(rf"^git config diff\.pne\.{recipe} .*$", GUIDE, re.MULTILINE)
     assert command

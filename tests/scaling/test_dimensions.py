@@ -62,7 +62,7 @@ def test_guards_of_the_catalogue(name: str) -> None:
         assert not names
 
 
-@pytest.mark.parametrize("name", sampled(DRAWN, 3))
+@pytest.mark.parametrize("name", sampled(DRAWN[::-1], 3))
 def test_guards_of_other_structures(name: str) -> None:
     assert not list(changed_ratios(drawn(name), LARGE))
 

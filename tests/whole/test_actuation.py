@@ -133,7 +133,7 @@ def states(name: str) -> list[State]:
     return [random_state(spec(name), rng, 0.3) for _ in range(2)]
 
 
-@pytest.mark.parametrize("name", sampled(CASES, 3))
+@pytest.mark.parametrize("name", sampled(CASES, 6))
 def test_generic_rank(name: str) -> None:
     case, found = CASES[name], actuation(spec(name))
     sizes = module(spec(name))
@@ -142,7 +142,7 @@ def test_generic_rank(name: str) -> None:
     assert (found.is_coupled, found.is_determined) == (case.coupled, case.held)
 
 
-@pytest.mark.parametrize("name", sampled(CASES, 3))
+@pytest.mark.parametrize("name", sampled(CASES, 6))
 def test_forces_and_accelerations(name: str) -> None:
     model, errors = module(spec(name)), dict[str, float]()
 
@@ -162,7 +162,7 @@ def bundle_is_closed(name: str) -> bool:
     return not describe(bundle(spec(name))).is_numeric
 
 
-@pytest.mark.parametrize("name", sampled(CASES, 3))
+@pytest.mark.parametrize("name", sampled(CASES, 6))
 def test_c_agrees(name: str, tmp_path: Path) -> None:
     model = module(spec(name))
     library = CLibrary(bundle(spec(name)), tmp_path, flags=("-O1", *WARNINGS))

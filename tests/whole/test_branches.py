@@ -22,6 +22,7 @@ from tests.models import catalogue, source, state_at
 from tests.oracle.closure import OracleError, close_legs
 from tests.oracle.coordinates import extra_indices, joint_slices, pose_size
 from tests.oracle.projection import project
+from tests.sampling import sampled
 from tests.whole.cases import Array, Case, assert_right
 from tests.whole.supported import SUPPORTED
 
@@ -86,7 +87,7 @@ def _count_of_branches(spec: Manipulator, number: int) -> int:
     return sum(leg_type == name for leg_type, _ in derivation.parameters.branches.values())
 
 
-@pytest.mark.parametrize("name", TURNABLE)
+@pytest.mark.parametrize("name", sampled(TURNABLE, 5))
 def test_turned_legs(name: str) -> None:
     spec = turned(name)
     before, after = signs_of(catalogue(name)), signs_of(spec)

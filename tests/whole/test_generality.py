@@ -88,7 +88,7 @@ REFUSED: dict[str, tuple[str, list[str], str]] = {
 """Space and platform joint -> legs and the mechanical reason; joints marked + lose the mark."""
 
 
-@pytest.mark.parametrize("name", sampled(ACCEPTED, 4))
+@pytest.mark.parametrize("name", sampled(ACCEPTED, 8))
 def test_right(name: str) -> None:
     rng = np.random.default_rng(7)
     space, legs = ACCEPTED[name]

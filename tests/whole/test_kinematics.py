@@ -11,6 +11,7 @@ from tests.models import catalogue, drawn, module, state_at
 from tests.oracle.comparison import relative_error
 from tests.oracle.coordinates import actuated_indices, displaced, step_between
 from tests.oracle.specs import randomise
+from tests.sampling import sampled
 from tests.whole.cases import Array, Case, case, own
 from tests.whole.supported import SUPPORTED
 
@@ -87,7 +88,7 @@ def test_hk_and_bias_are_derivatives_of_the_constraints(name: str) -> None:
     assert relative_error(Hk.T @ V, rate) < 1e-7
 
 
-@pytest.mark.parametrize("name", SUPPORTED)
+@pytest.mark.parametrize("name", sampled(SUPPORTED, 2))
 def test_forward_kinematics_undoes_inverse_kinematics(name: str) -> None:
     c = case(name, 1)
     q = c.state.q[actuated_indices(c.spec)]
