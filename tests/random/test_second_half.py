@@ -14,5 +14,6 @@ def test_right_or_refused_for_a_reason(seed: int) -> None:
     assert not found.problem, found
 
 
+@pytest.mark.only_in_all  # judges every seed
 def test_everything_occurs() -> None:
     check_breadth(SECOND)
