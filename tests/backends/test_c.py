@@ -17,7 +17,7 @@ from tests.sampling import sampled
 STATES = 19  # two lanes of 8 states, and a remainder
 
 
-@pytest.mark.parametrize("name", sampled(manipulators.names(), 3))
+@pytest.mark.parametrize("name", sampled(manipulators.names(), 5))
 def test_catalogue(name: str, tmp_path: Path) -> None:
     nominal, other = models.catalogue(name), models.random_spec(name, 1)
     module, p = models.module(nominal), models.live_parameters(nominal, other)

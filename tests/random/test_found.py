@@ -64,7 +64,7 @@ FOUND: dict[str, tuple[str, list[str]]] = {
 }
 
 
-@pytest.mark.parametrize("name", sampled(FOUND, 2))
+@pytest.mark.parametrize("name", sampled(FOUND, 4))
 def test_right(name: str) -> None:
     space, legs = FOUND[name]
     check(mechanism(space, legs, np.random.default_rng(5)), with_c="extra" in name)
@@ -212,7 +212,7 @@ BUILT = {
 CONSTRAINTS = {"planar leg in space": 3}
 
 
-@pytest.mark.parametrize("name", sampled(BUILT, 3))
+@pytest.mark.parametrize("name", sampled(BUILT, 6))
 def test_built(name: str) -> None:
     check(BUILT[name])
 
