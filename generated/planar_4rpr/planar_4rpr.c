@@ -77,7 +77,9 @@ INLINE real total(const real *x, size_t n)
 
 INLINE void clear(real *x, size_t n)
 {
-    memset(x, 0, n*sizeof *x);
+    for (size_t i = 0; i < n; ++i) {
+        x[i] = 0;
+    }
 }
 
 INLINE int is_finite(real x)

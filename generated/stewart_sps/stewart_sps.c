@@ -77,7 +77,9 @@ INLINE real total(const real *x, size_t n)
 
 INLINE void clear(real *x, size_t n)
 {
-    memset(x, 0, n*sizeof *x);
+    for (size_t i = 0; i < n; ++i) {
+        x[i] = 0;
+    }
 }
 
 INLINE int is_finite(real x)
@@ -5270,7 +5272,7 @@ int stewart_sps_complete_acceleration(const prepared *m, const real *X, const re
     for (size_t i = 0; i < FREE; ++i) {
         full[passive[i]] = 0;
     }
-    clear(a, sizeof a/sizeof *a);
+    memset(a, 0, sizeof a);
     for (size_t i = 0; i < N; ++i) {
         real *const row = a + i*PADDED;
         row[N] = -Z[passive[i]];
