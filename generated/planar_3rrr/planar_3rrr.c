@@ -3446,7 +3446,7 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
     if (wrench) {
         add_wrench(take(3, w, wrench, wrench_in, t), 1, w, force);
     }
-    clear(a, N*stride*w);
+    memset(a, 0, N*stride*w*sizeof *a);
     for (size_t i = 0; i < 3; ++i) {
         for (size_t k = 0; k < w; ++k) {
             for (size_t j = 0; j < 3; ++j) {
