@@ -19,7 +19,7 @@ from pne_sym.backends.describe import describe, equation_titles
 from pne_sym.mechanics.mobility import motions_at_home
 from pne_sym.model.errors import SpecError, SpecWarning
 from pne_sym.model.kinematics import TASK_SPACES, displaced, pose_at
-from pne_sym.model.manipulator import JointKind, Manipulator
+from pne_sym.model.manipulator import Manipulator
 from pne_sym.program.evaluate import Evaluation, Failure, Status, evaluate, prepare
 from pne_sym.program.interpret import Interpreter, PoseLayout
 from pne_sym.program.iteration import close_loops
@@ -220,7 +220,7 @@ def poses_around_home(manipulator: Manipulator) -> list[Array]:
     """
     space, joints = manipulator.space, [j for leg in manipulator.legs for j in leg.joints]
     twist, size = list(TASK_SPACES[space].components), _size(manipulator)
-    slides = np.array([c < 3 for c in twist] + [j.kind is JointKind.PRISMATIC for j in joints])
+    slides = np.array([c < 3 for c in twist] + [not j.kind.is_angle for j in joints])
     units = np.where(slides, size, 1.0)
     basis = np.linalg.qr(motions_at_home(manipulator) / units[:, None])[0]
     extra = [len(twist) + k for k, joint in enumerate(joints) if joint.extra]

@@ -12,16 +12,10 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from pne_sym.model.kind import Look
 from pne_sym.model.kinematics import TASK_SPACES, base_of, chain_pose, pose_at
 from pne_sym.model.loops import Loops
-from pne_sym.model.manipulator import (
-    Joint,
-    JointKind,
-    Leg,
-    Manipulator,
-    PlatformJointKind,
-    Space,
-)
+from pne_sym.model.manipulator import Joint, Leg, Manipulator, Space
 
 Array = NDArray[np.float64]
 
@@ -38,7 +32,7 @@ class Turn:
         axes: unit vectors; one for a revolute joint, two for a universal one, else none.
         driven: for each axis.
         extra: any of its displacements is a coordinate of its own.
-        kind: R, U, S or rigid.
+        look: a pin, a cross, a ball or a block.
         massless: the link that its last axis moves has no inertia.
     """
 
@@ -46,7 +40,7 @@ class Turn:
     axes: tuple[Array, ...]
     driven: tuple[bool, ...]
     extra: bool
-    kind: str
+    look: Look
     massless: bool = False
 
 
@@ -173,8 +167,8 @@ def _walk(leg: Leg, q: Sequence[float], platform: Array, *, planar: bool) -> Leg
         origin, axis = chain.origins[index], chain.axes[index]
         if any(joint.offset):
             parts.append(Bar(before, origin))
-        if joint.kind is JointKind.REVOLUTE:
-            turn = (axis,), (joint.actuated,), joint.extra, "R", joint.link.is_massless
+        if joint.kind.is_hinge:
+            turn = (axis,), (joint.actuated,), joint.extra, joint.kind.look, joint.link.is_massless
             parts.append(Turn(origin, *turn))
         else:
             parts.append(_slide(joint, origin, chain.points[index], axis, grounded=index == 0))
@@ -185,20 +179,17 @@ def _walk(leg: Leg, q: Sequence[float], platform: Array, *, planar: bool) -> Leg
 
 
 def _slide(joint: Joint, start: Array, end: Array, axis: Array, *, grounded: bool) -> Slide:
-    helical = joint.kind is JointKind.HELICAL
-    return Slide(start, end, axis, joint.actuated, joint.extra, helical, grounded)
+    screw = joint.kind.look is Look.SCREW
+    return Slide(start, end, axis, joint.actuated, joint.extra, screw, grounded)
 
 
 def _platform_joint(leg: Leg, tip: Array, frame: Array, platform: Array, *, planar: bool) -> Turn:
     joint = leg.platform_joint
-    if planar and joint.kind in (PlatformJointKind.SPHERICAL, PlatformJointKind.REVOLUTE):
-        return Turn(tip, (np.array([0.0, 0.0, 1.0]),), (False,), False, "R")
-    axes: list[Array] = []
-    if joint.axis_link is not None:
-        axes.append(frame @ np.array(joint.axis_link))
-    if joint.kind is PlatformJointKind.UNIVERSAL and joint.axis_platform is not None:
-        axes.append(platform @ np.array(joint.axis_platform))
-    return Turn(tip, tuple(axes), (False,) * len(axes), False, joint.kind.value)
+    if planar:
+        return Turn(tip, (np.array([0.0, 0.0, 1.0]),), (False,), False, Look.PIN)
+    bodies = {"axis_link": frame, "axis_platform": platform}
+    axes = tuple(bodies[name] @ np.array(getattr(joint, name)) for name in joint.kind.shown)
+    return Turn(tip, axes, (False,) * len(axes), False, joint.kind.look)
 
 
 def _joined(parts: tuple[Part, ...], near: float) -> tuple[Part, ...]:
@@ -219,12 +210,16 @@ def _joined(parts: tuple[Part, ...], near: float) -> tuple[Part, ...]:
 def _pair(first: Turn, second: Turn, near: float) -> Turn | None:
     """Two joints with a massless link between as one, or None."""
     apart = float(np.linalg.norm(first.point - second.point)) > near
-    if apart or not first.massless or second.kind != "R" or first.kind not in {"R", "U"}:
+    if apart or not first.massless or second.look != Look.PIN:
+        return None
+    if first.look not in {Look.PIN, Look.CROSS}:
         return None
     if abs(float(first.axes[-1] @ second.axes[0])) > SAME:
         return None
     driven, extra = first.driven + second.driven, first.extra or second.extra
     axes = first.axes + second.axes
-    if first.kind == "R":
-        return Turn(first.point, axes, driven, extra, "U", second.massless)
-    return None if any(driven) else Turn(first.point, (), (False,), extra, "S", second.massless)
+    if first.look is Look.PIN:
+        return Turn(first.point, axes, driven, extra, Look.CROSS, second.massless)
+    if any(driven):
+        return None
+    return Turn(first.point, (), (False,), extra, Look.BALL, second.massless)

@@ -23,6 +23,7 @@ from pne_sym.drawing.style import (
     proportions,
 )
 from pne_sym.drawing.view import View
+from pne_sym.model.kind import Look
 
 Array = NDArray[np.float64]
 
@@ -98,12 +99,12 @@ class _Leg:
         r, view = self.sizes.joint, self.view
         fill, edge, width = joint_colours(driven=any(turn.driven), extra=turn.extra)
         bias = 2.0 * r if index == len(self.leg.parts) - 1 else 0.0
-        if turn.kind == "S":
+        if turn.look is Look.BALL:
             return [ball(view, turn.point, 1.3 * r, Paint(fill, edge, width), bias)]
-        if turn.kind == "rigid":
+        if turn.look is Look.BLOCK:
             halves = tuple(0.9 * r * axis for axis in np.eye(3))
             return [box(view, turn.point, (halves[0], halves[1], halves[2]), Paint(LINK))]
-        if turn.kind == "R":
+        if turn.look is Look.PIN:
             point, half = turn.point + self._aside(turn, index), 1.7 * r * turn.axes[0]
             paint = Paint(fill, edge, width)
             return [cylinder(view, point - half, point + half, 1.2 * r, paint, 1.5 * r + bias)]

@@ -172,7 +172,7 @@ def elsewhere(m: Manipulator, rng: np.random.Generator) -> Manipulator | None:
     motions, twist = motions_at_home(m), len(TASK_SPACES[m.space].components)
     step = motions @ rng.uniform(-1.0, 1.0, motions.shape[1])
     loops, space = Loops(m.space, m.legs, m.fixed_centre), TASK_SPACES[m.space]
-    shifts = [k < 3 for k in space.components] + [not joint.turns for joint in loops.joints]
+    shifts = [k < 3 for k in space.components] + [not joint.kind.is_angle for joint in loops.joints]
     sizes = np.where(shifts, _SHIFT * _size(m), _TURN)
     step /= float(np.max(np.abs(step) / sizes))
     X, q = np.array(m.home.X), np.array(m.home.q)

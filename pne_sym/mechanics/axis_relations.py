@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from pne_sym.derivation import AxisRelation
 from pne_sym.mechanics.structure import TOLERANCE, LegType, is_coordinate
-from pne_sym.model.manipulator import JointKind
 
 Array = NDArray[np.float64]
 
@@ -23,7 +22,7 @@ def axis_relations(leg_type: LegType) -> Iterator[AxisRelation]:
     for k, (name, values) in enumerate(axes):
         for j in reversed(range(k)):
             yield from _relation(leg_type, axes[j], (name, values))
-            if leg_type.model.joints[j].kind is not JointKind.PRISMATIC:
+            if leg_type.model.joints[j].turns:
                 break
 
 

@@ -10,6 +10,7 @@ import sympy as sp
 from pne_sym.derivation import Book
 from pne_sym.mechanics.inverse_kinematics import InverseKinematics
 from pne_sym.mechanics.leg_geometry import LegGeometry
+from pne_sym.mechanics.scope import right_angles
 from pne_sym.model.errors import SpecError
 from pne_sym.model.kinematics import Array, chain_pose, pose_at, rotation_about
 from pne_sym.model.manipulator import Leg, Manipulator
@@ -88,12 +89,11 @@ def _values_at(
             values[vector.name] = spec[j - 1] @ np.array(offsets[j - 1])
     values[g.name("S")] = chain.tip
     values |= {g.pitch[j].name: leg.joints[j - 1].pitch for j in g.pitch}
-    for link, platform in g.pairs:
-        end = leg.platform_joint
-        values[link.name] = spec[-1] @ np.array(end.axis_link or (0.0, 0.0, 0.0))
-        values[platform.name] = (
-            np.array(leg.base_frame).T @ base_R_platform @ np.array(end.axis_platform or (0.0,) * 3)
-        )
+    leg_R_platform = np.array(leg.base_frame).T @ base_R_platform
+    pairs = zip(g.pairs, right_angles(g.leg_type, leg), strict=True) if g.pairs else ()
+    for (link, platform), (in_link, in_platform) in pairs:
+        values[link.name] = spec[-1] @ in_link
+        values[platform.name] = leg_R_platform @ in_platform
     values[g.name("size")] = 1.0
     _frame_vectors(values, leg, q, g, spec, row)
     return values
@@ -109,7 +109,9 @@ def _frame_vectors(
         axes = spec[j] @ g.canonical[j][row]
         x_axis, e = axes[:, 0], axes[:, 2]
         cosine, sine = g.zero_angle[j][row]
-        before = spec[j] @ rotation_about(leg.joints[j - 1].axis, -q[j - 1])
+        before = spec[j] @ rotation_about(
+            leg.joints[j - 1].axis, -leg.joints[j - 1].turn * q[j - 1]
+        )
         zero = before @ g.canonical[j][row][:, 0]
         reference = cosine * zero - sine * np.cross(e, zero)
         values[g.name(f"ref_{j}")] = reference

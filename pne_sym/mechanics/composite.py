@@ -111,8 +111,8 @@ class CompositeWriter:
         return found
 
     def _unit(self, j: int, k: int) -> str:
-        turning = sum(self.g.turns(i) for i in (j, k))
-        return ("kg", "kg m", "kg m^2")[turning]
+        angles = sum(self.g.kind(i).is_angle for i in (j, k))
+        return ("kg", "kg m", "kg m^2")[angles]
 
     def _composite(self, k: int, beyond: _Body) -> _Body:
         """The links from k outwards, about the origin of link k's group."""
@@ -182,21 +182,16 @@ class CompositeWriter:
 
     def _effort(self, k: int, body: _Body) -> tuple[Any, Any]:
         """Force, and moment about the group's origin, per unit acceleration of joint k."""
-        g, e = self.g, self.g.e[k]
-        if not g.turns(k):
-            force, moment = body.mass * e, Cross(body.first_moment, e)
-        else:
-            force, moment = Cross(e, body.first_moment), body.inertia @ e
-            if k in g.pitch:
-                force = force + g.pitch[k] * body.mass * e
-                moment = moment + g.pitch[k] * Cross(body.first_moment, e)
+        g, spin, slide = self.g, self.g.spin(k), self.g.slide(k)
+        force = Cross(spin, body.first_moment) + body.mass * slide
+        moment = body.inertia @ spin + Cross(body.first_moment, slide)
         frame = g.frame("axes", g.group[k])
         force = self._named(
             f"P_c{k}",
             force,
             rf"\mathbf P_{{{k}}}",
             f"force that accelerates joint {k}, per unit",
-            "kg m" if g.turns(k) else "kg",
+            "kg m" if g.kind(k).is_angle else "kg",
             frame,
         )
         if not g.group[k]:
@@ -206,7 +201,7 @@ class CompositeWriter:
             moment,
             rf"\mathbf L_{{{k}}}",
             f"moment about joint {g.group[k]} that accelerates joint {k}, per unit",
-            "kg m^2" if g.turns(k) else "kg m",
+            "kg m^2" if g.kind(k).is_angle else "kg m",
             frame,
         )
 
@@ -220,7 +215,7 @@ class CompositeWriter:
             total,
             rf"\mathbf L_{{{k},{group}}}",
             f"moment about joint {group} that accelerates joint {k}, per unit",
-            "kg m^2" if self.g.turns(k) else "kg m",
+            "kg m^2" if self.g.kind(k).is_angle else "kg m",
             self.g.frame("axes", group),
         )
 
@@ -232,9 +227,4 @@ class CompositeWriter:
         )
 
     def _along(self, j: int, force: Any, moment: Any) -> Any:
-        g, e = self.g, self.g.e[j]
-        if not g.turns(j):
-            return Dot(e, force)
-        if j in g.pitch:
-            return Dot(e, moment) + g.pitch[j] * Dot(e, force)
-        return Dot(e, moment)
+        return Dot(self.g.spin(j), moment) + Dot(self.g.slide(j), force)

@@ -13,6 +13,7 @@ import sympy as sp
 from pne_sym.derivation import Book, Condition, Law, Quantity, Trouble
 from pne_sym.mechanics.completion import Freedoms, LeftOut, completed_wrenches, direction
 from pne_sym.mechanics.leg_geometry import LegGeometry
+from pne_sym.mechanics.scope import moment_directions
 from pne_sym.model.kinematics import chain_pose, pose_at
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.vector import Cross, Dot, Vector, VectorSymbol, norm, vector_sum
@@ -68,10 +69,10 @@ def wrenches_left_out(
         return completed_wrenches(book, g, g.completion, freedoms)
     (n,) = motion.n
     across = [Cross(motion.v[joints[(k + 1) % 3]], motion.v[joints[(k + 2) % 3]]) for k in range(3)]
-    parts = [-Dot(g.e[j], n) * a for j, a in zip(joints, across, strict=True) if g.turns(j)]
+    parts = [-Dot(g.spin(j), n) * a for j, a in zip(joints, across, strict=True) if g.turns(j)]
     frame = g.frame("axes", g.group[g.count])
     volume = Dot(motion.v[joints[0]], across[0])
-    turning = sum(map(g.turns, joints))  # velocity vectors are lengths where a joint turns
+    turning = sum(g.kind(j).is_angle for j in joints)  # velocity vectors are lengths there
     if g.pure_moment:
         return [_per_unit_moment(book, g, vector_sum(parts), volume, turning, frame, n)]
     direction = book.define(
@@ -159,9 +160,8 @@ def force_vanishes(manipulator: Manipulator, g: LegGeometry) -> bool:
         leg = manipulator.legs[index]
         q = np.array(manipulator.home.q[starts[index] : starts[index + 1]])
         chain = chain_pose(leg, q)
-        link = chain.last @ np.array(leg.platform_joint.axis_link)
-        platform = np.array(leg.base_frame).T @ pose.R @ np.array(leg.platform_joint.axis_platform)
-        n = np.cross(link, platform)
+        leg_R_platform = np.array(leg.base_frame).T @ pose.R
+        n = moment_directions(g.leg_type, leg, chain.last, leg_R_platform)
         if np.abs(n @ chain.spins).max(initial=0.0) > 1e-6:
             return False
     return True
@@ -173,7 +173,7 @@ def axis_across(g: LegGeometry, joints: list[int]) -> Vector | None:
     def is_across(k: int, j: int) -> bool:
         if g.acts_as_slide(j):
             return g.perpendicular(k, j)
-        return j not in g.pitch and g.parallel(k, j) != 0
+        return not g.slides(j) and g.parallel(k, j) != 0
 
     for k in range(1, g.count + 1):
         if g.turns(k) and all(is_across(k, j) for j in joints):

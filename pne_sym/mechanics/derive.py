@@ -33,7 +33,7 @@ from pne_sym.mechanics.scales import define_size, home_lengths
 from pne_sym.mechanics.scope import check_scope
 from pne_sym.mechanics.structure import LegType, leg_types
 from pne_sym.model.kinematics import TASK_SPACES, TaskSpace
-from pne_sym.model.manipulator import JointKind, Manipulator
+from pne_sym.model.manipulator import Manipulator
 from pne_sym.vector import Dot, Vector, VectorSymbol, ZeroVector, sum_over_legs, vector_sum
 
 
@@ -92,7 +92,7 @@ def _coordinates(manipulator: Manipulator, space: TaskSpace, legs: list[Leg]) ->
         actuators=tuple((i, j) for i, j, joint in joints if joint.actuated),
         extras=tuple((i, j) for i, j, joint in joints if joint.extra),
         constraints=tuple(index for index, *_ in constraints),
-        turning=tuple(joint.kind is JointKind.REVOLUTE for *_, joint in joints),
+        turning=tuple(joint.kind.is_hinge for *_, joint in joints),
         home=(tuple(manipulator.home.X), tuple(manipulator.home.q)),
         actuation=actuation(manipulator),
         transmits_moments=any(leg.motion.n for leg in legs),
@@ -296,7 +296,7 @@ def _closure_outputs(book: Book, leg: Leg, frame: str, space: TaskSpace) -> None
         put(f"gap_{name}", -Dot(link, platform), ((0, i),))
         for k, j in enumerate(joints):
             if g.turns(j):
-                put(f"jacobian_{name}", Dot(g.e[j], n), ((0, i * width + k),))
+                put(f"jacobian_{name}", Dot(g.spin(j), n), ((0, i * width + k),))
 
 
 def _potential(

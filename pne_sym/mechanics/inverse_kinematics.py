@@ -111,7 +111,7 @@ def given_displacements(book: Book, g: LegGeometry, reasons: dict[int, str]) -> 
                 name,
                 f"q_{{{j}}}",
                 f"displacement of joint {j}, by iteration on the loop closure",
-                "rad" if g.turns(j) else "m",
+                g.kind(j).unit,
                 role=Role.DISPLACEMENT,
                 joint=j,
             )
@@ -163,16 +163,13 @@ class _Solver:
             pass
         elif g.is_unseen(j):
             self._orient(j)
-        elif g.acts_as_slide(j) or (j in g.pitch and not self._later(j)):
+        elif g.acts_as_slide(j) or (g.slides(j) and not self._later(j)):
             self._slide(j, x)
             if g.turns(j):
                 self._angle_of_displacement(j)
         else:
             x = self._turn(j, x)
-        if not g.turns(j) or j in g.pitch:
-            along = self.q[j] * g.pitch.get(j, 1)
-            x = x - along * g.e[j]
-        x = x - g.offset[j + 1]
+        x = x - self.q[j] * g.slide(j) - g.offset[j + 1]
         if j < g.count and not isinstance(x, VectorSymbol):
             x = self.book.define(
                 g.name(f"x_{j + 1}"),
@@ -197,7 +194,7 @@ class _Solver:
         g, later = self.g, self._later(j)
         turning = [k for k in later if not g.acts_as_slide(k)]
         sliding = [k for k in later if g.acts_as_slide(k)]
-        if any(k in g.pitch for k in turning):
+        if any(g.slides(k) for k in turning):
             return None
         if (
             turning
@@ -235,9 +232,9 @@ class _Solver:
         """Displacement and axis of the extra joints beyond joint j that slide."""
         g = self.g
         return [
-            (self.q[i] * g.pitch.get(i, 1), g.e[i])
+            (self.q[i] * g.advance(i), g.e[i])
             for i in range(j + 1, g.count + 1)
-            if g.is_extra(i) and (not g.turns(i) or i in g.pitch)
+            if g.is_extra(i) and g.slides(i)
         ]
 
     def _beyond(self, j: int) -> Vector:
@@ -271,11 +268,7 @@ class _Solver:
         centre = vector_sum(
             [
                 *(g.offset[i] for i in range(j + 1, first + 1)),
-                *(
-                    self.q[i] * g.pitch.get(i, 1) * g.e[i]
-                    for i in range(j + 1, first)
-                    if not g.turns(i) or i in g.pitch
-                ),
+                *(self.q[i] * g.slide(i) for i in range(j + 1, first) if g.slides(i)),
             ]
         )
         return "sphere", centre, g.offset[g.count + 1]
@@ -283,9 +276,9 @@ class _Solver:
     def _turn(self, j: int, x: Vector) -> Vector:
         later = self._later(j)
         found = self._invariant(j)
-        if found is None and not later and j not in self.g.pitch:
+        if found is None and not later and not self.g.slides(j):
             return self._direct(j, x)
-        if found is None or j in self.g.pitch or (found[0] == "sphere" and found[1] == ZeroVector):
+        if found is None or self.g.slides(j) or (found[0] == "sphere" and found[1] == ZeroVector):
             self._numeric(j)
             return x
         method, u, value = found
@@ -618,7 +611,7 @@ class _Solver:
                 self.q[j].name,
                 f"y_{{{j}}}",
                 f"extra coordinate: displacement of joint {j}",
-                "rad" if g.turns(j) else "m",
+                g.kind(j).unit,
                 role=Role.DISPLACEMENT,
                 joint=j,
             )
@@ -629,7 +622,7 @@ class _Solver:
 
     def _angle_of_displacement(self, j: int) -> None:
         """Cosine and sine of a turning joint whose displacement is known."""
-        g, book, q = self.g, self.book, self.q[j]
+        g, book, q = self.g, self.book, self.g.turn(j) * self.q[j]
         c0, s0 = g.zero_turn[j]
         for stem, rhs, what in (
             ("c", sp.cos(q) * c0 - sp.sin(q) * s0, "cosine"),
@@ -663,13 +656,12 @@ class _Solver:
             return
         method, u, value = found
         self.methods[j] = method
-        pitch = g.pitch.get(j, sp.S.One)
-        unit = "rad" if g.turns(j) else "m"
+        advance, unit = g.advance(j), g.kind(j).unit
         if method != "sphere":
             across = Dot(u, e) if u != e else sp.S.One
             self.q[j] = self.book.define(
                 g.name(f"q_{j}"),
-                (Dot(u, x) - value) / (across * pitch),
+                (Dot(u, x) - value) / (across * advance),
                 f"q_{{{j}}}",
                 f"displacement of joint {j}",
                 Law.LOOP_CLOSURE,
@@ -703,10 +695,10 @@ class _Solver:
         )
         sigma = self._branch_symbol(j)
         q = sp.Symbol(g.name(f"q_{j}"), real=True)
-        self.branches.append(Branch(sigma, j, q * pitch - along, 1))
+        self.branches.append(Branch(sigma, j, q * advance - along, 1))
         self.q[j] = self.book.define(
             q.name,
-            (along + sigma * sp.sqrt(discriminant)) / pitch,
+            (along + sigma * sp.sqrt(discriminant)) / advance,
             f"q_{{{j}}}",
             f"displacement of joint {j}",
             Law.LOOP_CLOSURE,

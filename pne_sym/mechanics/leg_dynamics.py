@@ -269,11 +269,7 @@ class DynamicsWriter:
             forms: tuple[Any, ...] = ()
             rests: tuple[Any, ...] = ()
         else:
-            slides = [
-                i
-                for i in range(1, j + 1)
-                if g.group[i] == body.group and (not g.turns(i) or i in g.pitch)
-            ]
+            slides = [i for i in range(1, j + 1) if g.group[i] == body.group and g.slides(i)]
             value, form, rest = self.k.point_acceleration(body.group, self.k.reach(j), slides)
             rhs = value - self.p.gravity
             forms, rests = (form - self.p.gravity,), (rest - self.p.gravity,)
@@ -485,11 +481,9 @@ class DynamicsWriter:
             for j in reversed(members):
                 force = self._sum_force(j, force, forces.get(j, ZeroVector), frame)
                 if j != group:
-                    gamma[j] = self._freedom(j, Dot(g.e[j], force))
+                    gamma[j] = self._freedom(j, Dot(g.slide(j), force))
             if group:
-                component = Dot(g.e[group], moment)
-                if group in g.pitch:
-                    component = component + g.pitch[group] * Dot(g.e[group], force)
+                component = Dot(g.spin(group), moment) + Dot(g.slide(group), force)
                 gamma[group] = self._freedom(group, component)
             force_out, moment_out = force, moment
         return gamma
@@ -549,14 +543,13 @@ class DynamicsWriter:
     def _freedom(self, j: int, component: Any) -> Any:
         if component == 0:
             return sp.S.Zero
-        what = {"R": "moment about", "P": "force along", "H": "moment and pitch times force along"}
         return self.write.define(
             f"Gamma_{j}",
             component,
             rf"\Gamma_{{{j}}}",
-            f"{what[self.g.kind(j).value]} axis {j} of the distal links' inertia and weight",
+            f"{self.g.kind(j).effort} axis {j} of the distal links' inertia and weight",
             Law.FREEDOM,
-            unit="N m" if self.g.turns(j) else "N",
+            unit=self.g.kind(j).effort_unit,
             coefficient_latex=rf"\boldsymbol\gamma_{{{j}}}",
             reference="Sec. 2.2, joint table",
             accelerated=self._accelerated(j) if self.g.composite else None,
@@ -565,9 +558,7 @@ class DynamicsWriter:
     def _accelerated(self, j: int) -> Any:
         """What of Gamma_j depends on the accelerations of the joints and of the tip."""
         total = sp.Add(*(self.inertia.get((j, k), 0) * qdd for k, qdd in self.motion.qdd.items()))
-        if self.g.turns(j):
-            total = total + Dot(self.g.e[j], self.tip_moment)
-        return total
+        return total + Dot(self.g.spin(j), self.tip_moment)
 
     def _solve(self, result: LegDynamics, gamma: dict[int, Any], phi: Any, a_tip: Any) -> None:
         """The leg's force on the platform, Eq. 3 and Eq. 4."""
@@ -714,16 +705,14 @@ class DynamicsWriter:
     def _extra_row(self, result: LegDynamics, j: int, gamma: dict[int, Any]) -> None:
         """Equilibrium along an extra joint: a row of its own (Eqs. 6, 7)."""
         g, motion = self.g, self.motion
-        row = gamma[j] - Dot(motion.v[j], self.G)
-        if g.turns(j) and self.G_m != ZeroVector:
-            row = row - Dot(g.e[j], self.G_m)
+        row = gamma[j] - Dot(motion.v[j], self.G) - Dot(g.spin(j), self.G_m)
         symbol = self.write.define(
             f"P_{j}",
             row,
             rf"P_{{{j}}}",
             f"inertia and weight of the leg along the extra freedom of joint {j}",
             Law.FREEDOM,
-            unit="N m" if g.turns(j) else "N",
+            unit=g.kind(j).effort_unit,
             coefficient_latex=rf"\mathbf m_{{{j}}}",
             reference="Eqs. 6, 7",
         )

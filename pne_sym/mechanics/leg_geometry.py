@@ -22,9 +22,11 @@ from numpy.typing import NDArray
 from pne_sym.derivation import Book, Frame, Law, ParameterField, Quantity, Rule
 from pne_sym.mechanics.axis_relations import axis_relations
 from pne_sym.mechanics.structure import TOLERANCE, LegType, is_coordinate
+from pne_sym.model.joint_kinds import JointKind
 from pne_sym.model.kinematics import rotation_about
-from pne_sym.model.manipulator import JointKind, PlatformJointKind
+from pne_sym.model.platform_kinds.interface import Direction
 from pne_sym.vector import Cross, Dot, Vector, VectorSymbol, ZeroVector, norm
+from pne_sym.vector.nodes import scale
 
 Array = NDArray[np.float64]
 _E = np.eye(3)
@@ -101,8 +103,28 @@ class LegGeometry:
         return self.leg_type.model.joints[j - 1].kind
 
     def turns(self, j: int) -> bool:
-        """Whether joint j turns (opens a group)."""
-        return self.leg_type.model.joints[j - 1].turns
+        """Whether joint j turns its link (opens a group)."""
+        return self.kind(j).turns
+
+    def slides(self, j: int) -> bool:
+        """Whether joint j moves its link along the axis."""
+        return self.kind(j).slides
+
+    def turn(self, j: int) -> Any:
+        """Angle of joint j per unit of its displacement."""
+        return sp.sympify(self.kind(j).turn(self.pitch.get(j)))
+
+    def advance(self, j: int) -> Any:
+        """Motion along axis j per unit of its displacement."""
+        return sp.sympify(self.kind(j).advance(self.pitch.get(j)))
+
+    def spin(self, j: int) -> Vector:
+        """Angular velocity of link j against the link before it, per unit rate."""
+        return scale(self.turn(j), self.e[j])
+
+    def slide(self, j: int) -> Vector:
+        """Velocity of link j along its axis, per unit rate."""
+        return scale(self.advance(j), self.e[j])
 
     def is_unseen(self, j: int) -> bool:
         """Whether turning joint j leaves the connection point where it is."""
@@ -113,9 +135,7 @@ class LegGeometry:
 
         So does a slide, and a helical joint beyond which all offsets lie along its axis.
         """
-        if not self.turns(j):
-            return True
-        return self.kind(j) is JointKind.HELICAL and j not in self.bent_helices
+        return self.slides(j) and j not in self.bent_helices
 
     def is_extra(self, j: int) -> bool:
         """Whether joint j's displacement is a coordinate of its own."""
@@ -138,7 +158,7 @@ class LegGeometry:
         Two slides along one direction, or two revolute joints about one line; (0, 0) if none.
         """
         for k in (extra - 1, extra + 1):
-            if not 1 <= k <= self.count or self.is_extra(k) or {k, extra} & self.pitch.keys():
+            if not 1 <= k <= self.count or self.is_extra(k) or self.pitch.keys() & {k, extra}:
                 continue
             sign = self.parallel(extra, k)
             on_line = not self.turns(k) or self.offset[max(k, extra)] == ZeroVector
@@ -289,7 +309,7 @@ class _Builder:
                     zeros=(2,) if self.planar else (),
                     rule=Rule.UNIT,
                 )
-            if joint.kind is JointKind.HELICAL:
+            if joint.kind.pitched:
                 (g.pitch[j],) = self.field(
                     f"joint{j}_pitch",
                     (),
@@ -318,7 +338,7 @@ class _Builder:
                 axis = np.array(joint.axis)
                 result[row, j - 1] = rotation @ axis
                 if j in turned:
-                    rotation = rotation @ rotation_about(axis, turned[j])
+                    rotation = rotation @ rotation_about(axis, joint.turn * turned[j])
         return result
 
     def offsets(self) -> None:
@@ -605,9 +625,9 @@ class _Builder:
                 (not g.turns(i) and g.parallel(j, i)) or i in g.unseen
                 for i in range(j + 1, g.count + 1)
             )
-            if j in g.pitch and not (straight and slides):
+            if g.slides(j) and not (straight and slides):
                 g.bent_helices.add(j)
-            if j not in g.pitch and straight and slides and not g.is_extra(j):
+            if not g.slides(j) and straight and slides and not g.is_extra(j):
                 g.unseen.add(j)
 
     def _give_axis(self, j: int) -> None:
@@ -627,34 +647,15 @@ class _Builder:
     def platform_joint(self) -> None:
         """Pairs of directions that the platform joint keeps perpendicular (7.4)."""
         end = self.type.model.platform_joint
-        if self.planar or end.kind is PlatformJointKind.SPHERICAL:
+        if self.planar or not end.right_angles:
             return
-        if end.kind is PlatformJointKind.RIGID:
-            rows = self.field(
-                "platform_joint_rotation",
-                (3, 3),
-                "-",
-                "platform axes in the last link's frame",
-                "platform_joint.rotation",
-                lambda leg: leg.platform_joint.rotation,
-                rule=self._turned(),
-            )
-            for k in range(3):
-                i = (k + 1) % 3
-                self._pair(k, tuple(sp.Integer(int(v)) for v in _E[k]), rows[3 * i : 3 * i + 3])
+        stated = {name: self._stated(name) for name in end.kind.fields}
+        live_axis = end.axis_link is not None and not is_coordinate(end.axis_link)
+        if live_axis and any(link.across for link, _ in end.right_angles):
+            self._two_across(stated["axis_link"], stated["axis_platform"])
             return
-        link = self._end_axis("axis_link", end.axis_link)
-        platform = self._end_axis("axis_platform", end.axis_platform)
-        if end.kind is PlatformJointKind.UNIVERSAL:
-            self._pair(0, link, platform)
-            return
-        if end.axis_link is not None and is_coordinate(end.axis_link):
-            main = int(np.argmax(np.abs(end.axis_link)))
-            for k in (0, 1):
-                across = tuple(sp.Integer(int(v)) for v in _E[(main + 1 + k) % 3])
-                self._pair(k, across, platform)
-        else:
-            self._two_across(link, platform)
+        for k, (link, platform) in enumerate(end.right_angles):
+            self._pair(k, _components(link, stated), _components(platform, stated))
 
     def _two_across(self, axis: Any, platform: Any) -> None:
         """Two orthogonal directions across an axis that is not along a coordinate direction."""
@@ -690,17 +691,22 @@ class _Builder:
             )
             self.g.pairs.append((direction, w))
 
-    def _end_axis(self, name: str, axis: Any) -> Any:
-        if is_coordinate(axis):
-            return tuple(sp.Integer(int(a)) for a in axis)
+    def _stated(self, name: str) -> Any:
+        """Components of what the specification states of the platform joint: live or fixed."""
+        value = getattr(self.type.model.platform_joint, name)
+        is_axis = name != "rotation"
+        if is_axis and is_coordinate(value):
+            return tuple(sp.Integer(int(a)) for a in value)
         return self.field(
             f"platform_joint_{name}",
-            (3,),
+            (3,) if is_axis else (3, 3),
             "-",
-            f"{name} of the platform joint",
+            f"{name} of the platform joint"
+            if is_axis
+            else "platform axes in the last link's frame",
             f"platform_joint.{name}",
             lambda leg: getattr(leg.platform_joint, name),
-            rule=Rule.UNIT,
+            rule=Rule.UNIT if is_axis else Rule.ROTATION,
         )
 
     def _pair(self, k: int, link: Any, platform: Any) -> None:
@@ -728,6 +734,19 @@ class _Builder:
             "direction of the platform joint, fixed in the platform",
             "-",
         )
+
+
+def _components(direction: Direction, stated: dict[str, Any]) -> tuple[Any, ...]:
+    """Components of a direction of the platform joint in the frame of its body."""
+    if not direction.field:
+        return tuple(sp.Integer(int(v)) for v in _E[direction.row])
+    values = stated[direction.field]
+    if direction.row is not None:
+        return tuple(values[3 * direction.row : 3 * direction.row + 3])
+    if direction.across:
+        main = next(i for i, v in enumerate(values) if v != 0)
+        return tuple(sp.Integer(int(v)) for v in _E[(main + direction.across) % 3])
+    return tuple(values)
 
 
 def across(leg_type: LegType) -> int:

@@ -38,9 +38,8 @@ from pne_sym.vector import (
     linear_form,
     vector_sum,
 )
-from pne_sym.vector.nodes import scale
 
-# Units of what is reciprocal to the freedom of a joint, by whether the joint turns.
+# Units of what is reciprocal to the freedom of a joint, by whether its displacement is an angle.
 _FORCE_PART = {True: "1/m", False: "-"}
 _MOMENT_PART = {True: "-", False: "m"}
 
@@ -79,13 +78,13 @@ class _Screw:
 
     Attributes:
         stem, latex: of the vector reciprocal to it.
-        turns: its displacement is an angle.
+        is_angle: its displacement is an angle.
         joint: from 1; 0 for a wrench.
     """
 
     stem: str
     latex: str
-    turns: bool = False
+    is_angle: bool = False
     joint: int = 0
 
 
@@ -143,17 +142,14 @@ class MotionWriter:
         """From the origin of the group of link j to the origin of link j."""
         g = self.g
         first = g.group[j]
-        terms = [self._along(first)] if first and first in g.pitch else []
+        terms = [self._along(first)] if first else []
         for i in range(first + 1, j + 1):
             terms.extend((g.offset[i], self._along(i)))
         return vector_sum(terms)
 
     def _along(self, j: int) -> Vector:
         """Displacement along axis j."""
-        g = self.g
-        if g.turns(j) and j not in g.pitch:
-            return ZeroVector
-        return scale(self.q[j] * g.pitch.get(j, 1), g.e[j])
+        return self.q[j] * self.g.slide(j) if self.g.slides(j) else ZeroVector
 
     def span(self, group: int) -> Vector:
         """From the origin of a group to the next group's joint, or to the connection point."""
@@ -230,16 +226,14 @@ class MotionWriter:
         g = self.g
         if not g.turns(j):
             return g.e[j]
-        vector = Cross(g.e[j], rods[j])
-        if j in g.pitch:
-            vector = vector + g.pitch[j] * g.e[j]
+        vector = Cross(g.spin(j), rods[j]) + g.slide(j)
         named: Vector = self.book.define(
             g.name(f"v_{j}"),
             vector,
             rf"\mathbf v_{{{j}}}",
             f"velocity of the connection point per rate of joint {j}",
             Law.RATE,
-            unit="m",
+            unit=g.kind(j).velocity_unit,
             body=self.tip_frame(),
             reference="Sec. 2.2, joint table",
         )
@@ -254,9 +248,9 @@ class MotionWriter:
         g, motion = self.g, self.motion
         joints = [j for j in range(1, g.count + 1) if not g.is_extra(j)]
         vectors: list[Any] = [motion.v[j] for j in joints]
-        scales: list[Any] = [g.size if g.turns(j) else sp.S.One for j in joints]
+        scales: list[Any] = [g.size * g.turn(j) if g.turns(j) else sp.S.One for j in joints]
         self._moment_directions()
-        rows = [[Dot(g.e[j], n) if g.turns(j) else sp.S.Zero for j in joints] for n in motion.n]
+        rows = [[Dot(g.spin(j), n) for j in joints] for n in motion.n]
         missing = (2 if self.space.planar else 3) + len(rows) - len(joints)
         frame = self.tip_frame()
         freedoms = Freedoms(list(vectors), [list(r) for r in rows], list(scales), motion.n, frame)
@@ -268,7 +262,7 @@ class MotionWriter:
             for row, amount in zip(rows, wrench.amounts, strict=True):
                 row.append(amount)
         screws = [
-            *(_Screw(f"w_{j}", rf"\mathbf w_{{{j}}}", g.turns(j), j) for j in joints),
+            *(_Screw(f"w_{j}", rf"\mathbf w_{{{j}}}", g.kind(j).is_angle, j) for j in joints),
             *(_Screw(f"wn_{k}", rf"\mathbf w_{{c{k}}}") for k in range(1, missing + 1)),
         ]
         duals, moment_duals = (
@@ -286,7 +280,7 @@ class MotionWriter:
                 rf"\mathbf o_{{{j}}}",
                 f"moment part of reciprocal wrench {j}",
                 Law.RECIPROCITY,
-                unit=_MOMENT_PART[g.turns(j)],
+                unit=_MOMENT_PART[g.kind(j).is_angle],
                 body=self.tip_frame(),
                 reference="Sec. 2.2, joint table",
                 role=Role.RECIPROCAL,
@@ -336,7 +330,7 @@ class MotionWriter:
                     screw.latex,
                     f"force part of reciprocal wrench {k + 1}",
                     Law.RECIPROCITY,
-                    unit=_FORCE_PART[screw.turns],
+                    unit=_FORCE_PART[screw.is_angle],
                     body=self.tip_frame(),
                     reference="Sec. 2.2, joint table",
                     role=Role.RECIPROCAL,
@@ -351,7 +345,7 @@ class MotionWriter:
                         f"m_{{{k + 1}{i + 1}}}",
                         f"moment part {i + 1} of reciprocal wrench {k + 1}",
                         Law.RECIPROCITY,
-                        unit=_MOMENT_PART[screw.turns],
+                        unit=_MOMENT_PART[screw.is_angle],
                         reference="Sec. 2.2, joint table",
                     )
                     for i in range(len(rows))
@@ -377,7 +371,7 @@ class MotionWriter:
                     screw.latex,
                     f"reciprocal vector {k + 1}",
                     Law.RECIPROCITY,
-                    unit=_FORCE_PART[screw.turns],
+                    unit=_FORCE_PART[screw.is_angle],
                     body=self.tip_frame(),
                     reference="Sec. 2.3",
                     role=Role.RECIPROCAL,
@@ -411,15 +405,14 @@ class MotionWriter:
                     name,
                     rf"\dot y_{{{j}}}",
                     f"rate of extra joint {j}",
-                    "rad/s" if g.turns(j) else "m/s",
+                    f"{g.kind(j).unit}/s",
                     role=Role.RATE,
                     joint=j,
                 )
             )
             motion.qd[j] = sp.Symbol(name, real=True)
             target = target - motion.qd[j] * motion.v[j]
-            if g.turns(j):
-                turning = turning - motion.qd[j] * g.e[j]
+            turning = turning - motion.qd[j] * g.spin(j)
         if extras:
             target = book.define(
                 g.name("S_dot_rest"),
@@ -447,7 +440,7 @@ class MotionWriter:
                 rf"\dot q_{{{j}}}",
                 f"rate of joint {j}",
                 Law.RECIPROCITY,
-                unit="rad/s" if g.turns(j) else "m/s",
+                unit=f"{g.kind(j).unit}/s",
                 role=Role.RATE,
                 joint=j,
             )
@@ -468,7 +461,7 @@ class MotionWriter:
             frame = g.frame("axes", j)
             motion.omega[j] = book.define(
                 g.name(f"omega_{j}"),
-                previous + motion.qd[j] * g.e[j],
+                previous + motion.qd[j] * g.spin(j),
                 rf"\boldsymbol\omega_{{{j}}}",
                 f"angular velocity of link {j}",
                 Law.RATE,
@@ -490,11 +483,8 @@ class MotionWriter:
     def _slide_velocity(self, group: int) -> Vector:
         """Velocity of sliding within a group."""
         g = self.g
-        terms = []
-        for j in range(1, g.count + 1):
-            if g.group[j] == group and (not g.turns(j) or j in g.pitch):
-                terms.append(self.motion.qd[j] * g.pitch.get(j, 1) * g.e[j])
-        return vector_sum(terms)
+        members = (j for j in range(1, g.count + 1) if g.group[j] == group)
+        return vector_sum(self.motion.qd[j] * g.slide(j) for j in members)
 
     # ---- accelerations ---------------------------------------------------------------
 
@@ -566,7 +556,7 @@ class MotionWriter:
         for j in self.spans:
             if j:
                 previous = g.group[j - 1]
-                turned = motion.qd[j] * Cross(motion.omega[previous], g.e[j])
+                turned = motion.qd[j] * Cross(motion.omega[previous], g.spin(j))
                 if turned != ZeroVector:
                     turned = book.define(
                         g.name(f"zeta_{j}"),
@@ -629,7 +619,7 @@ class MotionWriter:
                     name,
                     rf"\ddot y_{{{j}}}",
                     f"acceleration of extra joint {j}",
-                    "rad/s^2" if g.turns(j) else "m/s^2",
+                    f"{g.kind(j).unit}/s^2",
                     role=Role.JOINT_ACCELERATION,
                     joint=j,
                 )
@@ -637,8 +627,7 @@ class MotionWriter:
             motion.ydd[j] = motion.qdd[j] = sp.Symbol(name, real=True)
             motion.unknowns.append(motion.ydd[j])
             target = target - motion.ydd[j] * motion.v[j]
-            if g.turns(j):
-                turning = turning - motion.ydd[j] * g.e[j]
+            turning = turning - motion.ydd[j] * g.spin(j)
         if target != motion.S_ddot:
             target = writer.define(
                 "rel",
@@ -670,7 +659,7 @@ class MotionWriter:
                 rf"\ddot q_{{{j}}}",
                 f"acceleration of joint {j}",
                 Law.RECIPROCITY,
-                unit="rad/s^2" if g.turns(j) else "m/s^2",
+                unit=f"{g.kind(j).unit}/s^2",
                 coefficient_latex=rf"\mathbf w_{{{j}}}",
                 reference="Eqs. 8, 9, 16",
                 role=Role.JOINT_ACCELERATION,
@@ -721,7 +710,7 @@ class MotionWriter:
                 continue
             previous = motion.alpha[g.group[j - 1]]
             frame = g.frame("axes", j)
-            rhs = previous + motion.qdd[j] * g.e[j] + self.coriolis[j]
+            rhs = previous + motion.qdd[j] * g.spin(j) + self.coriolis[j]
             motion.alpha[j] = writer.define(
                 f"alpha_{j}",
                 rhs,
@@ -756,7 +745,7 @@ class MotionWriter:
         g = self.g
         if not g.composite or group != g.group[g.count]:
             return None
-        return vector_sum(self.motion.qdd[j] * g.e[j] for j in self.spans if j)
+        return vector_sum(self.motion.qdd[j] * g.spin(j) for j in self.spans if j)
 
     def point_acceleration(self, group: int, reach: Vector, slides: Sequence[int]) -> Any:
         """Acceleration of a point of a group: (rhs, form, form of the remainder)."""
@@ -764,11 +753,11 @@ class MotionWriter:
         omega = motion.omega[group]
         origin = motion.origin_acceleration[group]
         rest = motion.known[origin].remainder if origin in motion.known else origin
-        velocity = vector_sum(motion.qd[i] * g.pitch.get(i, 1) * g.e[i] for i in slides)
+        velocity = vector_sum(motion.qd[i] * g.slide(i) for i in slides)
         coriolis = Cross(omega, velocity) * 2
-        sliding = vector_sum(motion.qdd[i] * g.pitch.get(i, 1) * g.e[i] for i in slides)
+        sliding = vector_sum(motion.qdd[i] * g.slide(i) for i in slides)
         sliding_rest = vector_sum(
-            motion.known[motion.qdd[i]].remainder * g.pitch.get(i, 1) * g.e[i]
+            motion.known[motion.qdd[i]].remainder * g.slide(i)
             if motion.qdd[i] in motion.known
             else ZeroVector
             for i in slides
@@ -787,11 +776,7 @@ class MotionWriter:
         order = list(self.spans)
         motion.origin_acceleration[order[0]] = ZeroVector
         for previous, j in pairwise(order):
-            slides = [
-                i
-                for i in range(1, g.count + 1)
-                if g.group[i] == previous and (not g.turns(i) or i in g.pitch)
-            ]
+            slides = [i for i in range(1, g.count + 1) if g.group[i] == previous and g.slides(i)]
             rhs, form, rest = self.point_acceleration(previous, self.spans[previous], slides)
             if rhs == ZeroVector or isinstance(rhs, VectorSymbol):
                 motion.origin_acceleration[j] = rhs

@@ -465,9 +465,7 @@ class PlatformWriter:
         if twin:  # by reciprocity, without computing it
             return sp.Integer(sign if twin == j else 0)
         work = Dot(motion.w[j], motion.v[extra])
-        if j in motion.o and g.turns(extra):
-            work = work + Dot(motion.o[j], g.e[extra])
-        return work
+        return work + Dot(motion.o.get(j, ZeroVector), g.spin(extra))
 
     def _wrench_rows(
         self, array: str, leg: Leg, wrench: tuple[Any, Any], places: tuple[int, ...]
@@ -534,9 +532,7 @@ class PlatformWriter:
         for other, j, rows in self._extras():
             if other is not leg or leg.g.same_freedom(j)[0]:
                 continue
-            work = Dot(left_out.force, leg.motion.v[j])
-            if leg.g.turns(j):
-                work = work + Dot(left_out.moment, leg.g.e[j])
+            work = Dot(left_out.force, leg.motion.v[j]) + Dot(left_out.moment, leg.g.spin(j))
             if work != 0:
                 self.book.outputs.append(
                     Output("Hk", -work, ((0, 0),), ((0, 0),), leg.name, rows, places)

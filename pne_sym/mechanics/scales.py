@@ -60,7 +60,8 @@ def lever_arms(manipulator: Manipulator) -> list[float]:
     for leg, start in zip(manipulator.legs, starts, strict=False):
         q = np.array(manipulator.home.q[start : start + len(leg.joints)])
         turns = [joint.turns for joint in leg.joints]
-        arms = np.linalg.norm(chain_pose(leg, q).velocities[:, turns], axis=0)
+        rates = np.array([joint.turn for joint in leg.joints])[turns]
+        arms = np.linalg.norm(chain_pose(leg, q).velocities[:, turns], axis=0) / rates
         found.append(float(arms.max(initial=0.0)))
     return found
 
@@ -77,9 +78,7 @@ def define_size(book: Book, g: LegGeometry, home: HomeLengths) -> None:
     length from vanishing with the offsets.
     """
     turning = [j for j in range(1, g.count + 1) if g.turns(j)]
-    slides = any(
-        not g.turns(j) or j in g.pitch for j in range(min(turning, default=1), g.count + 1)
-    )
+    slides = any(g.slides(j) for j in range(min(turning, default=1), g.count + 1))
     g.arm = home.arm
     squares = [_across_square(g, group, turning[0]) for group in turning]
     squares += [pitch**2 for pitch in g.pitch.values()]
@@ -114,7 +113,7 @@ def _across_square(g: LegGeometry, group: int, first: int) -> Any:
     offset = vector_sum(offsets)
     if offset == ZeroVector:
         return sp.S.Zero
-    along = [group] if group == first or group in g.pitch else []
+    along = [group] if group == first or g.slides(group) else []
     for j in range(group + 1, g.count + 1):
         own = g.group[j] == group
         if own and not any(g.parallel(j, k) for k in along):

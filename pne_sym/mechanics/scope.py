@@ -9,14 +9,9 @@ from pne_sym.mechanics.scales import home_lengths
 from pne_sym.mechanics.structure import LegType, is_coordinate
 from pne_sym.model.errors import SpecError
 from pne_sym.model.kinematics import Array, ChainPose, TaskSpace, chain_pose, pose_at
-from pne_sym.model.manipulator import Leg, Manipulator, PlatformJointKind
+from pne_sym.model.manipulator import Leg, Manipulator, PlatformJoint
+from pne_sym.model.platform_kinds.interface import Direction
 
-_MOMENTS = {  # moments that a platform joint transmits, in space
-    PlatformJointKind.SPHERICAL: 0,
-    PlatformJointKind.UNIVERSAL: 1,
-    PlatformJointKind.REVOLUTE: 2,
-    PlatformJointKind.RIGID: 3,
-}
 _DEPENDENT = 1e-9  # smallest relative singular value of independent freedoms
 
 
@@ -29,8 +24,7 @@ def check_scope(manipulator: Manipulator, leg_type: LegType, space: TaskSpace) -
     """
     index, leg = leg_type.indices[0], leg_type.model
     freedoms = [j for j, joint in enumerate(leg.joints) if not joint.extra]
-    kind = leg.platform_joint.kind
-    moments = 0 if space.planar else _MOMENTS[kind]
+    moments = 0 if space.planar else leg.platform_joint.kind.moments
     most = (2 if space.planar else 3) + moments
     if len(freedoms) > most:
         raise SpecError(
@@ -94,20 +88,34 @@ def moment_directions(leg_type: LegType, leg: Leg, last: Array, leg_R_platform: 
         last: rotation from the last link's to leg axes.
         leg_R_platform: rotation from platform to leg axes.
     """
+    found = [
+        np.cross(last @ in_link, leg_R_platform @ in_platform)
+        for in_link, in_platform in right_angles(leg_type, leg)
+    ]
+    return np.array(found).reshape(-1, 3)
+
+
+def right_angles(leg_type: LegType, leg: Leg) -> list[tuple[Array, Array]]:
+    """Directions of the last link and of the platform that a platform joint keeps perpendicular."""
     end = leg.platform_joint
-    if end.kind is PlatformJointKind.RIGID:
-        return np.asarray(np.roll(last.T, -2, axis=0))
-    if end.axis_link is None or end.axis_platform is None:
-        return np.zeros((0, 3))
-    platform = leg_R_platform @ np.array(end.axis_platform)
-    if end.kind is PlatformJointKind.UNIVERSAL:
-        return np.cross(last @ np.array(end.axis_link), platform)[None]
-    axis = np.array(end.axis_link)
-    if is_coordinate(end.axis_link):
-        main = int(np.argmax(np.abs(axis)))
-        link = np.roll(np.eye(3), -main - 1, axis=0)[:2]
-    else:
-        first = np.cross(axis, np.eye(3)[across(leg_type)])
-        first = first / np.linalg.norm(first)
-        link = np.array([first, np.cross(axis, first)])
-    return np.asarray(np.cross(link @ last.T, platform))
+    return [
+        (_direction(leg_type, end, in_link), _direction(leg_type, end, in_platform))
+        for in_link, in_platform in end.right_angles
+    ]
+
+
+def _direction(leg_type: LegType, joint: PlatformJoint, direction: Direction) -> Array:
+    """A direction of a platform joint in numbers, in the frame of its body."""
+    if not direction.field:
+        return np.asarray(np.eye(3)[direction.row])
+    stated = np.array(getattr(joint, direction.field))
+    if direction.row is not None:
+        stated = stated[direction.row]
+    if not direction.across:
+        return stated
+    if is_coordinate(stated.tolist()):
+        main = int(np.argmax(np.abs(stated)))
+        return np.asarray(np.eye(3)[(main + direction.across) % 3])
+    first = np.cross(stated, np.eye(3)[across(leg_type)])
+    first /= np.linalg.norm(first)
+    return first if direction.across == 1 else np.cross(stated, first)

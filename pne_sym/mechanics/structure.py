@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pne_sym.model.manipulator import Joint, JointKind, Leg, Manipulator, Vector3
+from pne_sym.model.manipulator import Joint, Leg, Manipulator, Vector3
 
 TOLERANCE = 1e-9
 Array = NDArray[np.float64]
@@ -122,16 +122,16 @@ def architecture_of(leg: Leg) -> str:
             letters.append("_U" if following.actuated else "U")
             j += 2
             continue
-        letters.append(mark + joint.kind.value + ("*" if joint.extra else ""))
+        letters.append(mark + joint.kind.in_architecture + ("*" if joint.extra else ""))
         j += 1
-    return "".join(letters) + {"S": "S", "R": "R", "U": "U", "rigid": ""}[leg.platform_joint.kind]
+    return "".join(letters) + leg.platform_joint.kind.in_architecture
 
 
 def _is_cross(joint: Joint, following: Joint) -> bool:
     """Whether two joints are the axes of a massless cross."""
     return (
-        joint.kind is JointKind.REVOLUTE
-        and following.kind is JointKind.REVOLUTE
+        joint.kind.is_hinge
+        and following.kind.is_hinge
         and joint.link.is_massless
         and not (joint.actuated or joint.extra or following.extra)
         and not any(following.offset)

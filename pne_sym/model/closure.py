@@ -11,7 +11,7 @@ from collections.abc import Callable
 import numpy as np
 
 from pne_sym.model.kinematics import Array, Pose, base_of, chain_pose, skew
-from pne_sym.model.manipulator import IDENTITY3, Leg, PlatformJointKind, Vector3
+from pne_sym.model.manipulator import Leg
 
 Residual = Callable[[Array], Array]
 Step = Callable[[Array], Array]
@@ -40,11 +40,11 @@ def leg_gap(leg: Leg, q: Array, pose: Pose) -> tuple[Array, Array, Array]:
     gaps = [chain.tip - pose.t - arm]
     by_q = [chain.velocities]
     by_twist = [np.hstack([-np.eye(3), skew(arm)])]
-    for link_axis, platform_axis, is_dot in _axis_conditions(leg):
-        a, b = chain.last @ np.array(link_axis), pose.R @ np.array(platform_axis)
+    for condition in leg.platform_joint.closures:
+        a, b = chain.last @ np.array(condition.link), pose.R @ np.array(condition.platform)
         a_by_q = np.cross(chain.spins.T, a).T
         b_by_twist = np.hstack([np.zeros((3, 3)), -skew(b)])
-        if is_dot:
+        if condition.perpendicular:
             gaps.append(np.array([a @ b]))
             by_q.append((b @ a_by_q)[None, :])
             by_twist.append((a @ b_by_twist)[None, :])
@@ -92,17 +92,6 @@ def unreachable(matrix: Array) -> Array:
     rank = int(np.sum(s > _SINGULAR * max(1.0, _largest(s))))
     basis: Array = u[:, rank:].T
     return basis
-
-
-def _axis_conditions(leg: Leg) -> list[tuple[Vector3, Vector3, bool]]:
-    """Pairs of axes (link, platform) to coincide, or to be perpendicular (True)."""
-    joint = leg.platform_joint
-    if joint.kind is PlatformJointKind.RIGID and joint.rotation is not None:
-        columns = tuple(zip(*joint.rotation, strict=True))
-        return [(c, e, False) for c, e in zip(columns, IDENTITY3, strict=True)]
-    if joint.axis_link is None or joint.axis_platform is None:
-        return []
-    return [(joint.axis_link, joint.axis_platform, joint.kind is PlatformJointKind.UNIVERSAL)]
 
 
 def _largest(values: Array) -> float:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from pne_sym.model.joint_kinds import JointKind
 from pne_sym.model.manipulator import (
     Body,
     Joint,
-    JointKind,
     Leg,
     Manipulator,
     Matrix3,
@@ -15,6 +15,7 @@ from pne_sym.model.manipulator import (
 )
 
 Plain = dict[str, object]
+_PITCHED = {kind.letter for kind in JointKind if kind.pitched}
 
 
 def to_full_form(manipulator: Manipulator) -> Plain:
@@ -52,7 +53,7 @@ def _joint(joint: Joint) -> Plain:
         "axis": list(joint.axis),
         "offset": list(joint.offset),
     }
-    if joint.kind is JointKind.HELICAL:
+    if str(joint.kind) in _PITCHED:
         form["pitch"] = joint.pitch
     return form | {
         "actuated": joint.actuated,

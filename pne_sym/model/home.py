@@ -11,7 +11,7 @@ from pne_sym.model.entry import Entry
 from pne_sym.model.errors import SpecWarning
 from pne_sym.model.kinematics import TASK_SPACES, Array
 from pne_sym.model.loops import Loops, all_closed, legs_closed
-from pne_sym.model.manipulator import Home, Joint, JointKind, Leg, Space, Vector3
+from pne_sym.model.manipulator import Home, Joint, Leg, Space, Vector3
 from pne_sym.model.values import EXACT, number
 
 FIELDS = ("X", "q")
@@ -133,7 +133,7 @@ def _principal(joints: list[Joint], q: list[float]) -> Array:
     """Revolute displacements within (-pi, pi], except those that are coordinates."""
     return np.array(
         [
-            _wrapped(value) if joint.kind is JointKind.REVOLUTE and not joint.extra else value
+            _wrapped(value) if joint.kind.is_hinge and not joint.extra else value
             for joint, value in zip(joints, q, strict=True)
         ]
     )

@@ -3,33 +3,21 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from typing import Any
 
 from pne_sym.model.body import MASSLESS, read_body
 from pne_sym.model.entry import Entry, Table
 from pne_sym.model.errors import SpecError
-from pne_sym.model.manipulator import (
-    ZERO3,
-    Joint,
-    JointKind,
-    PlatformJoint,
-    PlatformJointKind,
-    Vector3,
-)
+from pne_sym.model.joint_kinds import WrittenJoint
+from pne_sym.model.kind import letters
+from pne_sym.model.manipulator import ZERO3, Joint, PlatformJoint, Vector3
+from pne_sym.model.platform_kinds import PlatformJointKind
 from pne_sym.model.values import ROUNDING, axis, flags, number, offset, rotation
 
 FIELDS = ("kind", "axis", "axes", "offset", "pitch", "actuated", "extra", "link")
 PLATFORM_FIELDS = ("kind", "offset", "axis_link", "axis_platform", "rotation")
 MAX_JOINTS = 12
 
-KINDS: dict[str, tuple[JointKind, ...]] = {
-    "R": (JointKind.REVOLUTE,),
-    "P": (JointKind.PRISMATIC,),
-    "H": (JointKind.HELICAL,),
-    "U": (JointKind.REVOLUTE, JointKind.REVOLUTE),
-    "C": (JointKind.REVOLUTE, JointKind.PRISMATIC),
-    "S": (JointKind.REVOLUTE, JointKind.REVOLUTE, JointKind.REVOLUTE),
-}
-"""Kinds of joints, and the freedoms that each stands for."""
 _OUT_OF_PLANE: Vector3 = (0.0, 0.0, 1.0)
 
 
@@ -47,10 +35,12 @@ def read_joint(entry: Entry, *, plane: bool) -> tuple[Joint, ...]:
         SpecError: a value or a combination without meaning.
     """
     table = entry.table(FIELDS)
-    kind = table.require("kind", "R, P, H, U, C or S").choice(tuple(KINDS))
-    kinds = KINDS[kind]
-    if plane and kind not in ("R", "P"):
-        raise table.fields["kind"].fault("R or P: other joints leave the plane")
+    known = [kind.letter for kind in WrittenJoint]
+    kind = WrittenJoint(table.require("kind", letters(WrittenJoint)).choice(known))
+    kinds = kind.parts
+    if plane and not kind.in_plane:
+        flat = letters(each for each in WrittenJoint if each.in_plane)
+        raise table.fields["kind"].fault(f"{flat}: other joints leave the plane")
     axes = _axes(table, kind, plane=plane)
     actuated = flags(table.get("actuated"), len(kinds))
     extra = flags(table.get("extra"), len(kinds))
@@ -83,31 +73,39 @@ def read_platform_joint(entry: Entry, *, plane: bool) -> PlatformJoint:
     if isinstance(entry.value, str):
         entry = Entry(entry.source, entry.where, {"kind": entry.value})
     table = entry.table(PLATFORM_FIELDS)
-    kind = PlatformJointKind(
-        table.require("kind", "S, R, U or rigid").choice([k.value for k in PlatformJointKind])
-    )
+    known = [kind.letter for kind in PlatformJointKind]
+    kind = PlatformJointKind(table.require("kind", letters(PlatformJointKind)).choice(known))
     start = table.get("offset")
     point = offset(start, plane=plane) if start else ZERO3
     if plane:
         return _planar_platform_joint(table, kind, point)
-    if kind in (PlatformJointKind.REVOLUTE, PlatformJointKind.UNIVERSAL):
-        table.refuse(("rotation",), "only a rigid platform joint has it")
-        in_link = axis(table.require("axis_link", "a unit vector in the last link's frame"))
-        in_platform = axis(table.require("axis_platform", "a unit vector in the platform frame"))
-        return PlatformJoint(kind, point, in_link, in_platform)
-    table.refuse(("axis_link", "axis_platform"), f"a platform joint of kind {kind} has no axis")
-    if kind is PlatformJointKind.RIGID:
-        turned = table.require("rotation", "platform axes in the last link's frame")
-        return PlatformJoint(kind, point, rotation=rotation(turned))
-    table.refuse(("rotation",), "only a rigid platform joint has it")
-    return PlatformJoint(kind, point)
+    if "axis_link" not in kind.fields:
+        axes = "axis_link", "axis_platform"
+        table.refuse(axes, f"a platform joint of kind {kind} has no axis")
+    if "rotation" not in kind.fields:
+        table.refuse(("rotation",), _NO_ROTATION)
+    return PlatformJoint(kind, point, **{name: _stated(table, name) for name in kind.fields})
+
+
+_NO_ROTATION = "only a rigid platform joint has it"
+_STATED = {
+    "axis_link": "a unit vector in the last link's frame",
+    "axis_platform": "a unit vector in the platform frame",
+    "rotation": "platform axes in the last link's frame",
+}
+
+
+def _stated(table: Table, name: str) -> Any:
+    """A direction, or a rotation, that a platform joint needs."""
+    entry = table.require(name, _STATED[name])
+    return rotation(entry) if name == "rotation" else axis(entry)
 
 
 def _planar_platform_joint(table: Table, kind: PlatformJointKind, point: Vector3) -> PlatformJoint:
     """In the plane R and S mean the same: the points coincide; the axis is (0, 0, 1)."""
-    if kind not in (PlatformJointKind.REVOLUTE, PlatformJointKind.SPHERICAL):
+    if not kind.in_plane:
         raise table.fields["kind"].fault("R or S: in the plane the legs are pinned")
-    table.refuse(("rotation",), "only a rigid platform joint has it")
+    table.refuse(("rotation",), _NO_ROTATION)
     for name in ("axis_link", "axis_platform"):
         given = table.get(name)
         if given and axis(given) != _OUT_OF_PLANE:
@@ -115,21 +113,21 @@ def _planar_platform_joint(table: Table, kind: PlatformJointKind, point: Vector3
     return PlatformJoint(kind, point)
 
 
-def _axes(table: Table, kind: str, *, plane: bool) -> tuple[Vector3, ...]:
+def _axes(table: Table, kind: WrittenJoint, *, plane: bool) -> tuple[Vector3, ...]:
     """The axis of each freedom."""
-    if kind in ("U", "S"):
+    if kind.crossed:
         table.refuse(("axis",), f"a joint of kind {kind} has axes = [...]")
-        return _perpendicular(table, 2 if kind == "U" else 3)
+        return _perpendicular(table, len(kind.parts))
     table.refuse(("axes",), f"a joint of kind {kind} has one axis")
     given = table.get("axis")
-    if plane and kind == "R":
+    if plane and kind.implied:
         if given and axis(given) != _OUT_OF_PLANE:
             raise given.fault("(0, 0, 1): revolute axes are normal to the plane z = 0")
         return (_OUT_OF_PLANE,)
     along = axis(table.require("axis", 'a unit vector such as "x" or [1, 0, 0]'), plane=plane)
     if plane and along[2] != 0.0:
         raise table.fields["axis"].fault("a direction in the plane z = 0")
-    return (along,) * len(KINDS[kind])
+    return (along,) * len(kind.parts)
 
 
 def _perpendicular(table: Table, count: int) -> tuple[Vector3, ...]:
@@ -147,9 +145,9 @@ def _perpendicular(table: Table, count: int) -> tuple[Vector3, ...]:
     return axes
 
 
-def _pitch(table: Table, kind: str) -> float:
-    """The advance per angle, m/rad: only a helical joint has one."""
-    if kind == "H":
+def _pitch(table: Table, kind: WrittenJoint) -> float:
+    """The advance per angle, m/rad: only a joint that turns and slides has one."""
+    if kind.pitched:
         entry = table.require("pitch", "the advance per angle, m/rad")
         pitch = number(entry)
         if pitch == 0.0:
@@ -157,7 +155,8 @@ def _pitch(table: Table, kind: str) -> float:
         return pitch
     given = table.get("pitch")
     if given and number(given) != 0.0:
-        raise given.fault(f"no pitch: the joint is of kind {kind}, not H")
+        pitched = letters(each for each in WrittenJoint if each.pitched)
+        raise given.fault(f"no pitch: the joint is of kind {kind}, not {pitched}")
     return 0.0
 
 

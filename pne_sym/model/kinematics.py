@@ -170,7 +170,7 @@ class ChainPose:
     @property
     def spins(self) -> Array:
         """Angular velocity of the last link per joint rate, (3, n)."""
-        return np.array([a * j.turns for j, a in zip(self.joints, self.axes, strict=True)]).T
+        return np.array([a * j.turn for j, a in zip(self.joints, self.axes, strict=True)]).T
 
     @property
     def velocities(self) -> Array:
@@ -179,7 +179,7 @@ class ChainPose:
         for joint, axis, origin in zip(self.joints, self.axes, self.origins, strict=True):
             column = joint.advance * axis
             if joint.turns:
-                column = column + np.cross(axis, self.tip - origin)
+                column = column + joint.turn * np.cross(axis, self.tip - origin)
             columns.append(column)
         return np.array(columns).T
 
@@ -193,7 +193,7 @@ def chain_pose(leg: Leg, q: Sequence[float] | Array, start: Pose = ORIGIN) -> Ch
         axis = rotation @ np.array(joint.axis)
         point = origin + joint.advance * float(x) * axis
         if joint.turns:
-            rotation = rotation @ rotation_about(joint.axis, float(x))
+            rotation = rotation @ rotation_about(joint.axis, joint.turn * float(x))
         origins.append(origin)
         points.append(point)
         axes.append(axis)

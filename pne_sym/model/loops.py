@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -11,15 +10,9 @@ import numpy.typing as npt
 
 from pne_sym.model.closure import least_norm, leg_gap, solve, unreachable
 from pne_sym.model.kinematics import TASK_SPACES, Array, displaced, pose_at
-from pne_sym.model.manipulator import Joint, Leg, PlatformJointKind, Space, Vector3
+from pne_sym.model.manipulator import Joint, Leg, Space, Vector3
 
 Flags = npt.NDArray[np.bool_]
-
-_CONDITIONS = {
-    PlatformJointKind.REVOLUTE: "the axes of its platform joint do not coincide",
-    PlatformJointKind.UNIVERSAL: "the axes of its platform joint are not perpendicular",
-    PlatformJointKind.RIGID: "its last link and the platform are not turned as they are joined",
-}
 
 
 @dataclass(frozen=True)
@@ -92,16 +85,7 @@ class Loops:
         if not axes.max(initial=0.0) > points.max():
             return Gap(leg, f"{points.max():.3g} m")
         kind = self.legs[leg].platform_joint.kind
-        return Gap(leg, f"{_angle(kind, axes):.3g} rad", _CONDITIONS[kind])
-
-
-def _angle(kind: PlatformJointKind, axes: Array) -> float:
-    """The angle (rad) by which a condition on axes fails that `leg_gap` tells in their terms."""
-    size = float(np.linalg.norm(axes))
-    if kind is PlatformJointKind.UNIVERSAL:  # the scalar product
-        return math.asin(min(1.0, size))
-    chord = size / math.sqrt(2.0) if kind is PlatformJointKind.RIGID else size
-    return 2.0 * math.asin(min(1.0, chord / 2.0))
+        return Gap(leg, f"{kind.angle(float(np.linalg.norm(axes))):.3g} rad", kind.open)
 
 
 def legs_closed(loops: Loops, X: Array, q: Array) -> Array:

@@ -14,8 +14,29 @@ from __future__ import annotations
 import enum
 from dataclasses import dataclass
 
+from pne_sym.model.joint_kinds import JointKind
+from pne_sym.model.platform_kinds import PlatformJointKind
+from pne_sym.model.platform_kinds.interface import Closure, Direction
+
 Vector3 = tuple[float, float, float]
 Matrix3 = tuple[Vector3, Vector3, Vector3]
+
+__all__ = [
+    "IDENTITY3",
+    "ZERO3",
+    "ZERO33",
+    "Body",
+    "Home",
+    "Joint",
+    "JointKind",
+    "Leg",
+    "Manipulator",
+    "Matrix3",
+    "PlatformJoint",
+    "PlatformJointKind",
+    "Space",
+    "Vector3",
+]
 
 ZERO3: Vector3 = (0.0, 0.0, 0.0)
 IDENTITY3: Matrix3 = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -30,23 +51,6 @@ class Space(enum.StrEnum):
     SPATIAL = "spatial"
     TRANSLATIONAL = "translational"
     SPHERICAL = "spherical"
-
-
-class JointKind(enum.StrEnum):
-    """Kind of a joint with one freedom."""
-
-    REVOLUTE = "R"
-    PRISMATIC = "P"
-    HELICAL = "H"
-
-
-class PlatformJointKind(enum.StrEnum):
-    """Kind of the joint that closes a leg at the platform."""
-
-    SPHERICAL = "S"
-    REVOLUTE = "R"
-    UNIVERSAL = "U"
-    RIGID = "rigid"
 
 
 @dataclass(frozen=True)
@@ -95,13 +99,18 @@ class Joint:
 
     @property
     def turns(self) -> bool:
-        """Whether the displacement is an angle."""
-        return self.kind is not JointKind.PRISMATIC
+        """Whether the link turns against the link before it."""
+        return self.kind.turns
+
+    @property
+    def turn(self) -> float:
+        """Angle by which the link turns, per unit of displacement."""
+        return float(self.kind.turn(self.pitch))
 
     @property
     def advance(self) -> float:
         """Motion along the axis per unit of displacement: 1, 0, or the pitch (m/rad)."""
-        return 1.0 if self.kind is JointKind.PRISMATIC else self.pitch
+        return float(self.kind.advance(self.pitch))
 
 
 @dataclass(frozen=True)
@@ -122,6 +131,17 @@ class PlatformJoint:
     axis_link: Vector3 | None = None
     axis_platform: Vector3 | None = None
     rotation: Matrix3 | None = None
+
+    @property
+    def right_angles(self) -> tuple[tuple[Direction, Direction], ...]:
+        """Right angles that it keeps; none where nothing is stated, in the plane."""
+        stated = all(getattr(self, field) is not None for field in self.kind.fields)
+        return self.kind.right_angles if stated else ()
+
+    @property
+    def closures(self) -> list[Closure]:
+        """What closes the loop besides the points, in numbers."""
+        return self.kind.closures(self)
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,9 @@ from __future__ import annotations
 import json
 
 from pne_sym.model import body, home, joints, legs, names, reader, symbols, values
-from pne_sym.model.manipulator import JointKind, PlatformJointKind, Space
+from pne_sym.model.joint_kinds import WrittenJoint
+from pne_sym.model.manipulator import Space
+from pne_sym.model.platform_kinds import PlatformJointKind
 from pne_sym.model.schema_text import MEANING
 
 Schema = dict[str, object]
@@ -113,7 +115,7 @@ def _body() -> Schema:
 def _joint_fields() -> dict[str, Schema]:
     flags: Schema = {"anyOf": [_FLAG, _list_of(_FLAG, 1, 3)]}
     return {
-        "kind": {"enum": list(joints.KINDS)},
+        "kind": {"enum": [kind.letter for kind in WrittenJoint]},
         "axis": _ref("axis"),
         "axes": _list_of(_ref("axis"), 2, 3),
         "offset": _ref("vector"),
@@ -126,21 +128,24 @@ def _joint_fields() -> dict[str, Schema]:
 
 def _joint() -> Schema:
     """What goes with which kind; in the plane an R joint needs no axis."""
-    compound = [kind for kind, parts in joints.KINDS.items() if len(parts) > 1 and kind != "C"]
+    crossed = [kind for kind in WrittenJoint if kind.crossed]
+    others = [kind for kind in WrittenJoint if not kind.crossed]
+    plain = [kind for kind in others if not (kind.pitched or kind.implied)]
     rules: list[Schema] = [
-        _when(compound, {"required": ["axes"], "not": {"required": ["axis"]}}),
-        _when([str(JointKind.HELICAL)], {"required": ["axis", "pitch"]}),
-        _when(["P", "C"], {"required": ["axis"]}),
-        _when(["R", "P", "H", "C"], {"not": {"required": ["axes"]}}),
-        _when(["U"], {"properties": {"axes": _list_of(_ref("axis"), 2)}}),
-        _when(["S"], {"properties": {"axes": _list_of(_ref("axis"), 3)}}),
+        _when(crossed, {"required": ["axes"], "not": {"required": ["axis"]}}),
+        _when([kind for kind in others if kind.pitched], {"required": ["axis", "pitch"]}),
+        _when(plain, {"required": ["axis"]}),
+        _when(others, {"not": {"required": ["axes"]}}),
     ]
+    for kind in crossed:
+        axes = _list_of(_ref("axis"), len(kind.parts))
+        rules.append(_when([kind], {"properties": {"axes": axes}}))
     return {**_table("joint", joints.FIELDS, _joint_fields(), ("kind",)), "allOf": rules}
 
 
 def _platform_joint_fields() -> dict[str, Schema]:
     return {
-        "kind": {"enum": [str(kind) for kind in PlatformJointKind]},
+        "kind": {"enum": [kind.letter for kind in PlatformJointKind]},
         "offset": _ref("vector"),
         "axis_link": _ref("axis"),
         "axis_platform": _ref("axis"),
@@ -240,9 +245,10 @@ def _joints(item: Schema) -> Schema:
     return {"type": "array", "items": item, "minItems": 1, "maxItems": joints.MAX_JOINTS}
 
 
-def _when(kinds: list[str], then: Schema) -> Schema:
+def _when(kinds: list[WrittenJoint], then: Schema) -> Schema:
+    letters = [kind.letter for kind in kinds]
     return {
-        "if": {"properties": {"kind": {"enum": kinds}}, "required": ["kind"]},
+        "if": {"properties": {"kind": {"enum": letters}}, "required": ["kind"]},
         "then": then,
     }
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from pne_sym.model.joint_kinds import JointKind
 from pne_sym.starter.notation import LegGroup, Letter
 
 Axes = tuple[str, ...]
@@ -60,16 +61,7 @@ class Chain:
 
 def axis_choices(letter: Letter, *, plane: bool) -> tuple[Axes, ...]:
     """Axes that a joint may have in the leg frame, the usual first."""
-    if plane:
-        return (("z",),) if letter.kind == "R" else (("x",), ("y",))
-    return {
-        "R": (("z",), ("x",), ("y",)),
-        "P": (("x",), ("z",), ("y",)),
-        "H": (("x",), ("z",), ("y",)),
-        "C": (("x",), ("z",), ("y",)),
-        "U": (("z", "y"), ("y", "z"), ("x", "z")),
-        "S": (("z", "y", "x"),),
-    }[letter.kind]
+    return letter.kind.plane_choices if plane else letter.kind.axis_choices
 
 
 def build_chain(group: LegGroup, axes: tuple[Axes, ...], side: float) -> Chain:
@@ -90,7 +82,7 @@ def build_chain(group: LegGroup, axes: tuple[Axes, ...], side: float) -> Chain:
         after = _is_telescope(letters, axes, index + 1)
         bend = BEND[bends % len(BEND)] if bars > 1 else 0.35
         joint, gap_after = _joint(letter, own, gap, _Place(length, telescope, after, bend, side))
-        bends += any(axis != "x" for axis in own) and letter.kind in "RUS"
+        bends += not letter.kind.slides and any(axis != "x" for axis in own)
         joints.append(joint)
         gap = gap_after
     return Chain(tuple(joints), gap)
@@ -107,48 +99,30 @@ class _Place:
 
 def _joint(letter: Letter, axes: Axes, gap: float, place: _Place) -> tuple[WrittenJoint, float]:
     """A joint and how far along x of its link the next one sits."""
-    fields: Plain = {"kind": letter.kind}
-    if len(axes) > 1:
+    kind = letter.kind
+    fields: Plain = {"kind": kind.letter}
+    if kind.crossed:
         fields["axes"] = list(axes)
     else:
         fields["axis"] = axes[0]
     if gap:
         fields["offset"] = [gap, 0.0, 0.0]
-    if letter.kind == "H":
+    if kind.pitched:
         fields["pitch"] = PITCH
-    if letter.kind in "PHC":
-        home, mirrored = _sliding_home(letter.kind, axes[0], place)
-        link, text, after = _sliding_link(place)
-    else:
-        angles = [_angle(axis, place) for axis in axes]
-        home = tuple(angle for angle, _ in angles)
-        mirrored = tuple(flips for _, flips in angles)
-        link, text, after = _turning_link(axes, place)
+    own = axes if kind.crossed else axes * len(kind.parts)
+    homes = [_home(part, axis, place) for part, axis in zip(kind.parts, own, strict=True)]
+    home, mirrored = (tuple(values) for values in zip(*homes, strict=True))
+    link, text, after = _sliding_link(place) if kind.slides else _turning_link(axes, place)
     fields["link"] = link
-    comment = f"{NAMES[letter.kind]} {text}"
-    return WrittenJoint(fields, home, mirrored, comment, letter), after
+    return WrittenJoint(fields, home, mirrored, f"{kind.comment} {text}", letter), after
 
 
-NAMES = {
-    "R": "Revolute joint.",
-    "P": "Prismatic joint.",
-    "H": "Helical joint (screw): the displacement is its angle.",
-    "U": "Universal joint: two revolute axes, the cross is massless.",
-    "C": "Cylindrical joint: turns about and slides along one axis.",
-    "S": "Spherical joint: three revolute axes at one point.",
-}
-
-
-def _sliding_home(
-    kind: str, axis: str, place: _Place
-) -> tuple[tuple[float, ...], tuple[bool, ...]]:
+def _home(kind: JointKind, axis: str, place: _Place) -> tuple[float, bool]:
+    """Displacement of a freedom, and whether mirrored legs have the opposite."""
+    if not kind.slides:
+        return _angle(axis, place)
     way = place.length if place.telescope else 0.1
-    if kind == "P":
-        return (way,), (False,)
-    if kind == "H":
-        return (round(way / PITCH, 6),), (False,)
-    angle, flips = _angle(axis, place)
-    return (angle, way), (flips, False)
+    return round(way / kind.advance(PITCH), 6), False
 
 
 def _angle(axis: str, place: _Place) -> tuple[float, bool]:
@@ -186,7 +160,7 @@ def _bars(letters: tuple[Letter, ...], axes: tuple[Axes, ...]) -> int:
     """How many long links there are: telescopes, and bars beyond a joint that bends."""
     found = 0
     for index, (letter, own) in enumerate(zip(letters, axes, strict=True)):
-        bends = letter.kind in "RUS" and any(axis != "x" for axis in own)
+        bends = not letter.kind.slides and any(axis != "x" for axis in own)
         if _is_telescope(letters, axes, index) or (
             bends and not _is_telescope(letters, axes, index + 1)
         ):
@@ -196,7 +170,7 @@ def _bars(letters: tuple[Letter, ...], axes: tuple[Axes, ...]) -> int:
 
 def _is_telescope(letters: tuple[Letter, ...], axes: tuple[Axes, ...], index: int) -> bool:
     """Whether a joint slides along a leg that a joint before it turns."""
-    if not 0 < index < len(letters) or letters[index].kind not in "PHC":
+    if not 0 < index < len(letters) or not letters[index].kind.slides:
         return False
-    turning = letters[index - 1].kind in "RUS" and axes[index - 1] != ("x",)
+    turning = not letters[index - 1].kind.slides and axes[index - 1] != ("x",)
     return turning and axes[index] == ("x",)

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from pne_sym.model.closure import leg_gap
 from pne_sym.model.entry import Entry
 from pne_sym.model.errors import SpecError
+from pne_sym.model.joint_kinds import WrittenJoint
 from pne_sym.model.joints import read_joint
 from pne_sym.model.kinematics import Pose, chain_pose
 from pne_sym.model.manipulator import (
@@ -24,7 +25,7 @@ from pne_sym.model.manipulator import (
     Vector3,
 )
 from pne_sym.starter.chain import Axes, Chain, axis_choices, build_chain
-from pne_sym.starter.notation import PLATFORM, SOURCE, LegGroup
+from pne_sym.starter.notation import SOURCE, LegGroup
 
 Array = npt.NDArray[np.float64]
 
@@ -89,7 +90,7 @@ def choose_shape(group: LegGroup, *, plane: bool, side: float) -> Shape:
     return best[1]
 
 
-def reshaped(shape: Shape, *, mirrored: bool, plane: bool, platform: str) -> Shape:
+def reshaped(shape: Shape, *, mirrored: bool, plane: bool, platform: PlatformJointKind) -> Shape:
     """The same leg or its mirror image, with tip and axes at its own home."""
     tip, frame = _end(shape.chain, plane=plane, mirrored=mirrored)
     axis_leg = _platform_axis(platform, frame, shape.axis_link)
@@ -121,7 +122,7 @@ def in_space(fields: dict[str, object], plane: bool) -> dict[str, object]:
     if not plane:
         return fields
     result = dict(fields)
-    if result["kind"] == "R":
+    if WrittenJoint(str(result["kind"])).implied:
         result.pop("axis", None)
     if isinstance(offset := result.get("offset"), list):
         result["offset"] = offset[:2]
@@ -137,7 +138,7 @@ def in_space(fields: dict[str, object], plane: bool) -> dict[str, object]:
 def _candidates(group: LegGroup, *, plane: bool) -> Iterator[tuple[tuple[Axes, ...], str]]:
     """Axes of all joints, and of the platform joint; the first joint varies fastest."""
     choices = [axis_choices(letter, plane=plane) for letter in group.letters]
-    ends = ("",) if plane or group.platform == "S" else ("y", "z", "x")
+    ends = ("",) if plane or not group.platform.fields else ("y", "z", "x")
     for end in ends:
         for reverse in itertools.product(*reversed(choices)):
             yield tuple(reversed(reverse)), end
@@ -151,7 +152,7 @@ def _judged(group: LegGroup, chain: Chain, axis_link: str, *, plane: bool) -> tu
     sizes = np.linalg.norm(columns, axis=0)
     still = sizes < 1e-9
     columns = columns / np.where(still, 1.0, sizes)
-    conditions = 2 if plane else 3 + PLATFORM[group.platform]
+    conditions = 2 if plane else 3 + group.platform.moments
     score, extra = -1.0, (False,) * columns.shape[1]
     for chosen in _extra_sets(group, columns.shape[1], conditions):
         rest = columns[:, [k for k, is_extra in enumerate(chosen) if not is_extra]]
@@ -166,8 +167,7 @@ def _extra_sets(group: LegGroup, count: int, conditions: int) -> Iterator[tuple[
     """The marked extra freedoms, or every choice of as many as are surplus."""
     marked = []
     for letter in group.letters:
-        size = {"R": 1, "P": 1, "H": 1, "U": 2, "C": 2, "S": 3}[letter.kind]
-        marked += [False] * (size - 1) + [letter.extra]
+        marked += [False] * (len(letter.kind.parts) - 1) + [letter.extra]
     surplus = max(0, count - conditions)
     if any(marked):
         if sum(marked) < surplus:
@@ -188,7 +188,7 @@ def _columns(
     group: LegGroup, chain: Chain, axis_link: str, axis_leg: Array, tip: Array, *, plane: bool
 ) -> Array:
     """Rates of the closure gap by each freedom, for a platform parallel to the leg frame."""
-    kind = PlatformJointKind.SPHERICAL if plane else PlatformJointKind(group.platform)
+    kind = PlatformJointKind.SPHERICAL if plane else group.platform
     x, y, z = axis_leg.tolist()
     platform = (
         PlatformJoint(kind, (chain.end, 0.0, 0.0), _DIRECTIONS[axis_link], (x, y, z))
@@ -208,12 +208,12 @@ def _end(chain: Chain, *, plane: bool, mirrored: bool) -> tuple[Array, Array]:
     return found.tip, found.last
 
 
-def _platform_axis(platform: str, frame: Array, axis_link: str) -> Array:
-    """The axis fixed in the platform: equal to the link's (R), or perpendicular to it (U)."""
+def _platform_axis(platform: PlatformJointKind, frame: Array, axis_link: str) -> Array:
+    """The axis fixed in the platform: perpendicular to the link's, or the same."""
     if not axis_link:
         return np.zeros(3)
     own: Array = frame @ np.array(_DIRECTIONS[axis_link])
-    if platform == "R":
+    if not platform.keeps_right_angle:
         return own
     for name in "zyx":
         if abs(own @ np.array(_DIRECTIONS[name])) < 1e-9:

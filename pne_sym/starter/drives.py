@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from pne_sym.mechanics.mobility import mobility
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.starter.choose import Shape
-from pne_sym.starter.notation import FREEDOMS, LegGroup, is_marked
+from pne_sym.starter.notation import LegGroup, is_marked
 
 Flags = tuple[bool, ...]
 
@@ -22,7 +22,9 @@ def choose_drives(
     """The marked drives; else as many in each leg as the mechanism needs, slides first."""
     if is_marked(groups):
         return tuple(
-            tuple(flag for letter in group.letters for flag in _marked(letter.kind, letter.driven))
+            tuple(
+                flag for letter in group.letters for flag in letter.kind.driven_parts(letter.driven)
+            )
             for group in groups
         )
     total = sum(group.count for group in groups)
@@ -50,18 +52,11 @@ def other_drives(poor: tuple[Flags, ...], shapes: tuple[Shape, ...]) -> Iterator
     return itertools.islice(itertools.product(*per_group), _MOST_DRIVES)
 
 
-def _marked(kind: str, driven: bool) -> list[bool]:
-    if kind == "U":
-        return [False, driven]
-    return [driven] * FREEDOMS[kind]
-
-
 def _preferred(group: LegGroup) -> list[int]:
-    """Freedoms in the order in which drives are put on them."""
-    ranked, at = [], 0
-    for letter in group.letters:
-        for k in range(FREEDOMS[letter.kind]):
-            rank = {"P": 0, "H": 0, "C": 0, "R": 1, "U": 2, "S": 3}[letter.kind]
-            ranked.append((rank, at + k))
-        at += FREEDOMS[letter.kind]
-    return [index for _, index in sorted(ranked)]
+    """Freedoms in the order in which drives are put on them: slides, then what turns simply."""
+    ranks = [
+        0 if letter.kind.slides else len(letter.kind.parts)
+        for letter in group.letters
+        for _ in letter.kind.parts
+    ]
+    return sorted(range(len(ranks)), key=ranks.__getitem__)

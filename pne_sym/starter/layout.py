@@ -9,12 +9,15 @@ from dataclasses import dataclass
 
 from pne_sym.mechanics.mobility import drive_quality
 from pne_sym.model.errors import SpecError, SpecWarning
+from pne_sym.model.joint_kinds import WrittenJoint
+from pne_sym.model.kind import Kind
 from pne_sym.model.legs import is_plane
 from pne_sym.model.manipulator import Manipulator, Space
+from pne_sym.model.platform_kinds import PlatformJointKind
 from pne_sym.model.reader import from_mapping
 from pne_sym.starter.choose import Shape, choose_shape, in_space
 from pne_sym.starter.drives import Flags, choose_drives, other_drives
-from pne_sym.starter.notation import FREEDOMS, SOURCE, LegGroup, is_marked
+from pne_sym.starter.notation import SOURCE, LegGroup, is_marked
 from pne_sym.starter.place import HEIGHT, Placed, leg_names, place_legs
 
 Plain = dict[str, object]
@@ -52,9 +55,9 @@ class Plan:
 def default_space(groups: tuple[LegGroup, ...]) -> Space:
     """The plane where all joints can move in it and legs are short; else space."""
     flat = all(
-        group.platform == "R"
+        group.platform is PlatformJointKind.REVOLUTE
         and group.freedoms <= 3
-        and all(letter.kind in "RP" for letter in group.letters)
+        and all(letter.kind.in_plane for letter in group.letters)
         for group in groups
     )
     return Space.PLANAR if flat else Space.SPATIAL
@@ -140,14 +143,15 @@ def _check_letters(groups: tuple[LegGroup, ...], space: Space) -> None:
     if not is_plane(space):
         return
     for group in groups:
-        wrong = [letter.kind for letter in group.letters if letter.kind not in "RP"]
-        wrong += [group.platform] if group.platform == "U" else []
+        kinds: list[Kind] = [*(letter.kind for letter in group.letters), group.platform]
+        wrong = [kind.letter for kind in kinds if not kind.in_plane]
         if wrong:
+            flat = " and ".join(kind.letter for kind in WrittenJoint if kind.in_plane)
             raise SpecError(
                 SOURCE,
                 "",
                 f"joint {wrong[0]!r} of {group.plain} leaves the plane",
-                f"joints R and P in the space '{space}', or another --space",
+                f"joints {flat} in the space '{space}', or another --space",
             )
 
 
@@ -198,14 +202,14 @@ def _platform(space: Space) -> Plain:
 
 
 def _leg_type(group: LegGroup, shape: Shape, driven: Flags, *, plane: bool) -> Plain:
-    end: Plain = {"kind": group.platform}
+    end: Plain = {"kind": group.platform.letter}
     if shape.chain.end:
         end["offset"] = [shape.chain.end, 0.0] if plane else [shape.chain.end, 0.0, 0.0]
     if shape.axis_link:
         end["axis_link"] = shape.axis_link
     joints, at = [], 0
     for written in shape.chain.joints:
-        size = FREEDOMS[written.letter.kind]
+        size = len(written.letter.kind.parts)
         fields = dict(in_space(written.fields, plane))
         link = fields.pop("link")
         for mark, values in (("actuated", driven), ("extra", shape.extra)):

@@ -10,18 +10,21 @@ import re
 from dataclasses import dataclass, replace
 
 from pne_sym.model.errors import SpecError, show
+from pne_sym.model.joint_kinds import WrittenJoint
+from pne_sym.model.kind import letters
 from pne_sym.model.legs import MAX_LEGS
+from pne_sym.model.platform_kinds import PlatformJointKind
 
-FREEDOMS = {"R": 1, "P": 1, "H": 1, "U": 2, "C": 2, "S": 3}
-PLATFORM = {"S": 0, "U": 1, "R": 2}
-"""Letters of a platform joint, and how many moments it transmits in space."""
+PLATFORM = {kind.letter: kind for kind in PlatformJointKind if kind.in_architecture}
+"""Platform joints that the notation has."""
+_BY_MOMENTS = sorted(PLATFORM.values(), key=lambda kind: kind.moments)
 MOST_FREEDOMS = 7
 SOURCE = "--legs"
 
 _GROUP = re.compile(r"(?:([0-9]{1,4})-)?((?:_?[A-Za-z]\*?)+)")
 _LETTER = re.compile(r"(_?)([A-Za-z])(\*?)")
 _GRAMMAR = (
-    "COUNT-LETTERS, several joined by +, of the letters R P H U C S, "
+    f"COUNT-LETTERS, several joined by +, of the letters {' '.join(map(str, WrittenJoint))}, "
     "_ before a driven joint, * after an extra one, such as 6-UPS, 2-RPR+1-RRR, 6-U_PS"
 )
 
@@ -31,12 +34,12 @@ class Letter:
     """A joint as the notation has it.
 
     Attributes:
-        kind: R, P, H, U, C or S.
+        kind: of joint.
         driven: marked by `_`: of a universal joint the second freedom, of others all.
         extra: marked by `*`: of joints with several freedoms the last.
     """
 
-    kind: str
+    kind: WrittenJoint
     driven: bool = False
     extra: bool = False
 
@@ -48,22 +51,22 @@ class LegGroup:
     Attributes:
         count: how many.
         letters: joints from the base, without the platform joint.
-        platform: letter of the platform joint.
+        platform: the platform joint.
     """
 
     count: int
     letters: tuple[Letter, ...]
-    platform: str
+    platform: PlatformJointKind
 
     @property
     def freedoms(self) -> int:
         """Freedoms of a leg, without those of the platform joint."""
-        return sum(FREEDOMS[letter.kind] for letter in self.letters)
+        return sum(len(letter.kind.parts) for letter in self.letters)
 
     @property
     def plain(self) -> str:
         """The letters without marks."""
-        return "".join(letter.kind for letter in self.letters) + self.platform
+        return "".join(letter.kind.letter for letter in self.letters) + self.platform.letter
 
 
 def parse_legs(text: str) -> tuple[LegGroup, ...]:
@@ -104,31 +107,32 @@ def _group(part: str) -> LegGroup:
     count = int(match[1] or 1)
     if count < 1:
         raise _fault(f"{count} legs {show(match[2])}", "one leg or more")
-    letters = tuple(
-        Letter(kind.upper(), bool(driven), bool(extra))
-        for driven, kind, extra in _LETTER.findall(match[2])
-    )
-    for letter in letters:
-        if letter.kind not in FREEDOMS:
-            raise _fault(
-                f"joint {letter.kind!r} in {show(part)}",
-                "R revolute, P prismatic, H helical, U universal, C cylindrical, S spherical",
-            )
-    return _leg(part, count, letters)
+    written = [(kind.upper(), driven, extra) for driven, kind, extra in _LETTER.findall(match[2])]
+    return _leg(part, count, written)
 
 
-def _leg(part: str, count: int, letters: tuple[Letter, ...]) -> LegGroup:
-    *joints, last = letters
-    if not joints:
+def _leg(part: str, count: int, written: list[tuple[str, str, str]]) -> LegGroup:
+    """Legs from their letters, each with its marks."""
+    known = {kind.letter: kind for kind in WrittenJoint}
+    for letter, *_ in written:
+        if letter not in known and letter not in PLATFORM:
+            words = ", ".join(f"{kind} {kind.word}" for kind in known.values())
+            raise _fault(f"joint {letter!r} in {show(part)}", words)
+    *chain, (last, *marks) = written
+    if not chain:
         raise _fault(f"leg {show(part)}", "at least one joint before the platform joint")
-    if last.kind not in PLATFORM:
+    if last not in PLATFORM:
         raise _fault(
-            f"platform joint {last.kind!r} in {show(part)}",
-            "a leg that ends in S, U or R (the last letter is the platform joint)",
+            f"platform joint {last!r} in {show(part)}",
+            f"a leg that ends in {letters(_BY_MOMENTS)} (the last letter is the platform joint)",
         )
-    if last.driven or last.extra:
+    if any(marks):
         raise _fault(f"a mark at the platform joint of {show(part)}", "marks of other joints only")
-    group = LegGroup(count, tuple(joints), last.kind)
+    for letter, *_ in chain:
+        if letter not in known:
+            raise _fault(f"joint {letter!r} in {show(part)}", "only as platform joint, at the end")
+    joints = tuple(Letter(known[kind], bool(driven), bool(extra)) for kind, driven, extra in chain)
+    group = LegGroup(count, joints, PLATFORM[last])
     if group.freedoms > MOST_FREEDOMS:
         raise _fault(
             f"{group.freedoms} freedoms in {show(part)}",

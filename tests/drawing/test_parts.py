@@ -27,7 +27,7 @@ def letters(name: str, leg: int = 0) -> str:
     text = ""
     for part in scene(name).legs[leg].parts:
         if isinstance(part, Turn):
-            text += part.kind
+            text += part.look
         elif isinstance(part, Slide):
             text += "H" if part.helical else "P"
     return text

@@ -10,7 +10,7 @@ from pne_sym.starter import parse_legs, starter_text
 
 def test_counts_letters_and_platform_joint() -> None:
     (group,) = parse_legs("6-UPS")
-    assert (group.count, group.plain, group.platform, group.freedoms) == (6, "UPS", "S", 3)
+    assert (group.count, group.plain, group.platform.letter, group.freedoms) == (6, "UPS", "S", 3)
     assert parse_legs("6-ups") == parse_legs("6-UPS")
 
 

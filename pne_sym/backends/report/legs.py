@@ -10,7 +10,7 @@ from pne_sym.backends.report.markdown import inline, table, unit
 from pne_sym.backends.report.mechanism import model_joints
 from pne_sym.backends.report.names import leg_indices, leg_title, per_leg_names
 from pne_sym.backends.report.view import LegView, Table
-from pne_sym.backends.report.words import KINDS, METHODS, PLATFORM_JOINTS
+from pne_sym.backends.report.words import METHODS
 from pne_sym.derivation import Derivation, LegTypeInfo, ParameterField, names_in
 from pne_sym.model.manipulator import ZERO3, Joint, Vector3
 
@@ -76,7 +76,7 @@ def _joint_row(joints: Sequence[Joint], at: int) -> tuple[str, ...]:
     ]
     return (
         str(at + 1),
-        KINDS[joint.kind.value],
+        joint.kind.word,
         ", ".join(roles) or "passive",
         _axis(joint.axis),
         _relation(before, joint.axis),
@@ -110,7 +110,7 @@ def _offset(offset: Vector3) -> str:
 def _closing(bundle: Bundle, info: LegTypeInfo) -> Iterator[str]:
     """The platform joint, and the signs of the assembly branches."""
     end = bundle.manipulator.legs[info.indices[0]].platform_joint
-    kind = PLATFORM_JOINTS[end.kind.value]
+    kind = end.kind.word
     if bundle.coordinates.planar:
         kind = "pin (the points coincide)"
     offset = "" if end.offset == ZERO3 else f", offset {_offset(end.offset)}"

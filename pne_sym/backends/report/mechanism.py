@@ -8,9 +8,11 @@ from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.report.markdown import table, unit
 from pne_sym.backends.report.names import leg_title
 from pne_sym.backends.report.view import Table
-from pne_sym.backends.report.words import CASES, JOINTS, SPACES
+from pne_sym.backends.report.words import CASES, SPACES
 from pne_sym.derivation import LegTypeInfo
-from pne_sym.model.manipulator import Joint, JointKind, Manipulator
+from pne_sym.model.joint_kinds import WrittenJoint
+from pne_sym.model.manipulator import Joint, Manipulator
+from pne_sym.model.platform_kinds import PlatformJointKind
 
 _SIZES = {
     "NQ": "size of X: coordinates of the platform, and extra coordinates",
@@ -41,7 +43,10 @@ def summary(bundle: Bundle) -> str:
 def _letters(bundle: Bundle) -> str:
     """The letters of the architectures that occur."""
     titles = "".join(info.title for info in bundle.derivation.leg_types)
-    return ", ".join(f"{letter}: {word}" for letter, word in JOINTS.items() if letter in titles)
+    kinds = {kind.letter: kind.word for kind in (*WrittenJoint, *PlatformJointKind)}
+    return ", ".join(
+        f"{k}: {word} joint" for k, word in kinds.items() if len(k) == 1 and k in titles
+    )
 
 
 def cases(bundle: Bundle) -> tuple[str, ...]:
@@ -114,11 +119,11 @@ def _listed(names: tuple[str, ...]) -> str:
 
 
 def _displacement(joint: Joint) -> str:
-    return "m" if joint.kind is JointKind.PRISMATIC else "rad"
+    return joint.kind.unit
 
 
 def _effort(joint: Joint) -> str:
-    return "N" if joint.kind is JointKind.PRISMATIC else "N m"
+    return joint.kind.effort_unit
 
 
 def _per_type(bundle: Bundle, pick: object, measure: object) -> str:

@@ -112,16 +112,6 @@ METHODS: dict[str, str] = {
     "numeric": "no closed form, found by iteration on the leg's loop closure{reason}",
 }
 
-JOINTS = {
-    "R": "revolute joint",
-    "P": "prismatic joint",
-    "H": "helical joint",
-    "U": "universal joint",
-    "C": "cylindrical joint",
-    "S": "spherical joint",
-}
-KINDS = {"R": "revolute", "P": "prismatic", "H": "helical"}
-PLATFORM_JOINTS = {"S": "spherical", "R": "revolute", "U": "universal", "rigid": "rigid"}
 FUNCTIONS = {
     "dynamics": "all of the equation of motion together",
     "M": "mass matrix",
