@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from pne_sym.backends.bundle import Bundle
-from pne_sym.backends.c_api import api_table
-from pne_sym.backends.c_calls import ApiWriter
 from pne_sym.backends.c_functions import LANES, function_text
 from pne_sym.backends.c_model import (
     default_values,
@@ -15,10 +13,17 @@ from pne_sym.backends.c_model import (
     parameter_fields,
     prepare_body,
 )
+from pne_sym.backends.c_public import Caller, c_functions
+from pne_sym.backends.c_steps import OPERATIONS, Steps, biggest
+from pne_sym.backends.c_support import needed
 from pne_sym.backends.c_text import Routine, wrapped
-from pne_sym.backends.describe import Described, describe, moment_rows
+from pne_sym.backends.describe import Described, describe
 from pne_sym.backends.templating import render
+from pne_sym.program import interpret, iteration, operations
 from pne_sym.program.ir import Closure
+
+_SUPPORT = ("linear", "operations", "rotations", "iteration")
+"""Templates of plain C, of which a module gets what it needs."""
 
 
 @dataclass(frozen=True)
@@ -43,24 +48,12 @@ class CView:
     Attributes:
         coordinates: contents of the flat vectors, lines of the header's comment.
         parameters, model: members of the structures.
-        prototypes, definitions: lines of every public function.
+        prototypes: lines of every function that users call.
         defaults, home_x, home_q: initialisers.
-        checks, prepare: statements of the preparation.
-        has_relations: whether live axes must keep right angles or directions.
+        checks, prepare: statements of the preparation; `checked`: what these checks need.
         closures: legs whose displacements are found by iteration.
-        extra_joints, turning_joints: positions in q of the extra coordinates, and of the
-            displacements found by iteration that are angles.
-        closure_functions: texts of the functions that these need.
-        functions: texts of the other functions of the program.
-        calls: calls of such functions in templates, by purpose.
-        moment_rows: rows of H and Hk that are moments.
-        driven: number of equations from which the forces are found.
-        completion: number of equations for the accelerations of passive extra coordinates.
-        gathers: whether rows on which nothing acts are found by rank.
-        padded: sizes of linear systems, padded, by purpose.
-        big: largest number of rows or columns of a least-squares problem.
-        q0: where the quaternion begins in X.
-        driven_joints, turning_drives, actuator_legs: index tables.
+        support: operations that the texts need.
+        texts: all functions.
         lanes: number of states that run side by side.
     """
 
@@ -68,97 +61,91 @@ class CView:
     parameters: tuple[str, ...]
     model: tuple[str, ...]
     prototypes: tuple[tuple[str, ...], ...]
-    definitions: tuple[tuple[str, ...], ...]
     defaults: tuple[str, ...]
     home_x: str
     home_q: str
     checks: tuple[str, ...]
-    has_relations: bool
+    checked: str
     prepare: tuple[str, ...]
     closures: tuple[CClosure, ...]
-    extra_joints: tuple[int, ...]
-    turning_joints: tuple[int, ...]
-    closure_functions: tuple[str, ...]
-    functions: tuple[str, ...]
-    calls: dict[str, str]
-    moment_rows: tuple[int, ...]
-    driven: int
-    completion: int
-    gathers: bool
-    padded: dict[str, int]
-    big: int
-    q0: int
-    driven_joints: tuple[int, ...]
-    turning_drives: tuple[int, ...]
-    actuator_legs: tuple[int, ...]
+    support: str
+    texts: tuple[str, ...]
     lanes: int = LANES
 
 
 class CBackend:
     """Emits NAME.h and NAME.c."""
 
-    operations = None
+    operations = OPERATIONS
 
     def emit(self, bundle: Bundle) -> dict[str, str]:
         """File name -> text."""
-        d = describe(bundle)
-        view = self.view(bundle)
+        d, view = describe(bundle), _view(bundle)
         return {
             f"{bundle.name}.h": render("c/header.h.jinja", view=view, d=d),
             f"{bundle.name}.c": render("c/source.c.jinja", view=view, d=d),
         }
 
-    def view(self, bundle: Bundle) -> CView:
-        """What the templates print."""
-        d, c, n = describe(bundle), bundle.coordinates, bundle.coordinates.sizes
-        functions, runs = _functions(bundle, d)
-        closures = _closures(bundle, runs)
-        api = [ApiWriter(bundle.name, a) for a in api_table(bundle, d)]
-        driven = tuple(c.joints.index(a) for a in c.actuators)
-        passive, idle = len(d.actuation.passive), d.actuation.idle
-        completion = passive + (idle if d.completes_freely else 0)
-        return CView(
-            coordinates=_coordinate_lines(d),
-            parameters=tuple(parameter_fields(bundle)),
-            model=tuple(model_fields(bundle)),
-            prototypes=tuple(tuple(a.prototypes()) for a in api),
-            definitions=tuple(tuple(a.definitions()) for a in api),
-            defaults=tuple(default_values(bundle)),
-            home_x=", ".join(f"R({v})" for v in c.home[0]),
-            home_q=", ".join(f"R({v})" for v in c.home[1]),
-            checks=tuple(parameter_checks(bundle)),
-            has_relations=bool(bundle.derivation.parameters.relations),
-            prepare=tuple(prepare_body(bundle)),
-            closures=closures,
-            extra_joints=tuple(joint for joint, _ in bundle.program.given),
-            turning_joints=tuple(j for x in closures for j in x.of.turning),
-            closure_functions=tuple(t for n, t in functions.items() if _is_closure(n)),
-            functions=tuple(t for n, t in functions.items() if not _is_closure(n)),
-            calls=_calls(runs),
-            moment_rows=moment_rows(bundle),
-            driven=len(d.actuation.solved) - d.actuation.surplus,
-            completion=completion,
-            gathers=d.resolves or n["NU"] > d.actuation.force_rank != len(d.actuation.others),
-            padded={
-                "drive": _padded(len(d.actuation.solved)),
-                "forward": _padded(n["NV"] + n["NC"]),
-                "completion": _padded(completion),
-            },
-            big=max(
-                n["NV"],
-                n["NU"] + n["NC"],
-                *(max(x.rows, x.of.unknowns) for x in closures),
+
+def _view(bundle: Bundle) -> CView:
+    """What the templates print."""
+    functions, runs = _functions(bundle)
+    closures = tuple(
+        CClosure(
+            closure,
+            bundle.program.shapes[f"gap_{(leg := closure.leg_type)}"][1],
+            runs[f"closure_{leg}"].call_with(
+                {"w": "1", "joints": "q", f"gap_{leg}": "gap", f"jacobian_{leg}": "jacobian"}
             ),
-            q0=c.pose.index("qx") if c.has_quaternion else 0,
-            driven_joints=driven,
-            turning_drives=tuple(k for k, j in enumerate(driven) if c.turning[j]),
-            actuator_legs=tuple(leg for leg, _ in c.actuators),
         )
+        for closure in bundle.program.closures
+    )
+    steps, routines = _steps(bundle, runs)
+    users = [Caller(bundle.name, f, routines[f.of.name]) for f in c_functions(bundle)]
+    texts = [
+        *(t for n, t in functions.items() if n.startswith("closure_")),
+        *([_closing(bundle, closures)] if closures else []),
+        "/* ---- functions of the state: M, Z, H and the like ---- */",
+        *(t for n, t in functions.items() if not n.startswith("closure_")),
+        "/* ---- what users call, as steps over these ---- */",
+        *steps,
+        "/* ---- one state, and batches ---- */",
+        *("\n".join(user.definitions()) for user in users),
+    ]
+    checks = tuple(parameter_checks(bundle))
+    support = _support(bundle)
+    home = bundle.coordinates.home
+    return CView(
+        coordinates=_coordinate_lines(describe(bundle)),
+        parameters=tuple(parameter_fields(bundle)),
+        model=tuple(model_fields(bundle)),
+        prototypes=tuple(tuple(user.prototypes()) for user in users),
+        defaults=tuple(default_values(bundle)),
+        home_x=", ".join(f"R({v})" for v in home[0]),
+        home_q=", ".join(f"R({v})" for v in home[1]),
+        checks=checks,
+        checked=needed(render("c/checks.c.jinja"), (*checks, needed(support, texts))),
+        prepare=tuple(prepare_body(bundle)),
+        closures=closures,
+        support=needed(support, texts),
+        texts=tuple(texts),
+    )
 
 
-def _padded(n: int) -> int:
-    """Length of a row of a system of n equations with its right side, a multiple of 4."""
-    return (n + 4) // 4 * 4
+def _support(bundle: Bundle) -> str:
+    """All that a module may need of written-out C."""
+    c = bundle.coordinates
+    return "\n".join(
+        render(
+            f"c/{name}.c.jinja",
+            big=biggest(bundle),
+            tiny=operations.TINY,
+            quaternion=sum(n in "xyz" for n in c.pose) if c.has_quaternion else None,
+            sizes=c.sizes,
+            found=interpret.FOUND,
+        )
+        for name in _SUPPORT
+    )
 
 
 def _coordinate_lines(d: Described) -> tuple[str, ...]:
@@ -171,46 +158,35 @@ def _coordinate_lines(d: Described) -> tuple[str, ...]:
     return tuple(line for name, text in named for line in wrapped(f"{name}: {text}", "    "))
 
 
-def _is_closure(function: str) -> bool:
-    return function.startswith("closure_")
-
-
-def _closures(bundle: Bundle, runs: dict[str, Routine]) -> tuple[CClosure, ...]:
-    """The legs whose displacements are found by iteration."""
-    return tuple(
-        CClosure(
-            closure,
-            bundle.program.shapes[f"gap_{closure.leg_type}"][1],
-            runs[f"closure_{closure.leg_type}"].call(w="1", joints="q"),
-        )
-        for closure in bundle.program.closures
+def _closing(bundle: Bundle, closures: tuple[CClosure, ...]) -> str:
+    """The iterations on the loop closure."""
+    return render(
+        "c/closure.c.jinja",
+        name=bundle.name,
+        closures=closures,
+        turning=[j for c in closures for j in c.of.turning],
+        given=bundle.program.given,
+        sizes=bundle.coordinates.sizes,
+        steps=iteration.STEPS,
+        longest=iteration.LONGEST,
     )
 
 
-def _functions(bundle: Bundle, d: Described) -> tuple[dict[str, str], dict[str, Routine]]:
-    """Texts of the program's functions with what evaluates them, and the routines that run them."""
+def _functions(bundle: Bundle) -> tuple[dict[str, str], dict[str, Routine]]:
+    """Texts of the program's functions, and the routines that run them."""
     texts, runs = {}, {}
-    public = {a.name: a for a in api_table(bundle, d) if a.arrays}
     for function in bundle.program.functions.values():
-        text, runs[function.name] = function_text(bundle, function)
-        if function.name in public:
-            writer = ApiWriter(bundle.name, public[function.name])
-            text += "\n\n" + "\n".join(writer.any(bundle, runs[function.name]))
-        texts[function.name] = text
+        texts[function.name], runs[function.name] = function_text(bundle, function)
     return texts, runs
 
 
-def _calls(runs: dict[str, Routine]) -> dict[str, str]:
-    """Calls of the program's functions as the templates need them."""
-    one = {"w": "1"}
-    return {
-        "required": runs["required"].call(required="force"),
-        "required_one": runs["required"].call(required="force", **one),
-        "dynamics": runs["dynamics"].call(),
-        "dynamics_one": runs["dynamics"].call(**one),
-        "M_one": runs["M"].call(**one),
-        "Z_one": runs["Z"].call(**one),
-        "condition_one": runs["condition"].call(**one),
-        "legs_one": runs["legs"].call(**one),
-        "potential_one": runs["potential"].call(potential="energies + 1", **one),
-    }
+def _steps(bundle: Bundle, runs: dict[str, Routine]) -> tuple[list[str], dict[str, Routine]]:
+    """Texts of the public functions' steps, and the routines that run them."""
+    texts: list[str] = []
+    routines: dict[str, Routine] = {}
+    for function in bundle.program.public:
+        if any(o.value.size for o in function.outputs):
+            steps = Steps(bundle, function, runs, routines)
+            routines[function.name] = steps.routine()
+            texts += [*steps.before, "\n".join(routines[function.name].definition())]
+    return texts, routines

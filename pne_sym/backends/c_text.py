@@ -120,23 +120,28 @@ class Routine:
         name: of the function.
         parameters: declarations, such as "const real *X".
         body: lines.
+        kind: how the compiler is to treat it.
     """
 
     name: str
     parameters: tuple[str, ...]
     body: tuple[str, ...]
+    kind: str = "INLINE"
 
     @staticmethod
-    def of(name: str, parameters: Iterable[str], body: Iterable[str]) -> Routine:
+    def of(
+        name: str, parameters: Iterable[str], body: Iterable[str], kind: str = "INLINE"
+    ) -> Routine:
         """A routine without the parameters that its body does not mention."""
         lines = tuple(body)
         words = words_of(lines)
-        return Routine(name, tuple(p for p in parameters if parameter_name(p) in words), lines)
+        kept = tuple(p for p in parameters if parameter_name(p) in words)
+        return Routine(name, kept, lines, kind)
 
     def definition(self) -> list[str]:
         """The text of the function."""
         return [
-            *listing(f"INLINE void {self.name}(", self.parameters, ")"),
+            *listing(f"{self.kind} void {self.name}(", self.parameters, ")"),
             "{",
             *indented(self.body),
             "}",

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.derivation import Actuation, Coordinates, Derivation, ParameterField, Rule
-from pne_sym.program.count import count_function
 
 
 @dataclass(frozen=True)
@@ -52,8 +51,7 @@ class Described:
         sizes: NQ, NV, NU, NC, NW, NJ.
         coordinates: names and order.
         pose_text, rate_text, tau_text, wrench_text: contents of X, V, tau, wrench.
-        counts: (function, mul, add, div, sqrt, trig).
-        has_rotation, has_quaternion, is_constrained, is_redundant, has_extras: features.
+        has_quaternion, is_constrained, is_redundant: features.
         legs: number of legs.
         is_numeric: some displacements are found by iteration; functions take q0.
     """
@@ -67,15 +65,9 @@ class Described:
     rate_text: str
     tau_text: str
     wrench_text: str
-    counts: tuple[tuple[str, int, int, int, int, int], ...]
     legs: int
 
     is_numeric: bool
-
-    @property
-    def has_rotation(self) -> bool:
-        """Whether orientation is a coordinate."""
-        return any(c >= 3 for c in self.coordinates.components)
 
     @property
     def has_quaternion(self) -> bool:
@@ -106,32 +98,6 @@ class Described:
         """
         return not self.actuation.is_determined
 
-    @property
-    def by_least_norm(self) -> bool:
-        """Whether forces are found by least norm, not from as many equations as unknowns."""
-        return self.is_redundant or self.actuation.surplus > 0
-
-    @property
-    def completes(self) -> bool:
-        """Whether accelerations of passive extra coordinates follow from those of the others."""
-        facts = self.actuation
-        return facts.idle > 0 and facts.completes and not self.is_underdriven
-
-    @property
-    def completes_freely(self) -> bool:
-        """Whether they do so in more than one way."""
-        return self.completes and self.actuation.idle < len(self.actuation.passive)
-
-    @property
-    def resolves(self) -> bool:
-        """Whether combinations of rows on which nothing acts are found at run time."""
-        return self.completes and self.actuation.is_coupled
-
-    @property
-    def has_extras(self) -> bool:
-        """Whether there are extra coordinates."""
-        return bool(self.coordinates.extras)
-
 
 def safe_text(text: str) -> str:
     """A user's text, harmless in C comments, Python docstrings and Markdown."""
@@ -145,10 +111,6 @@ def describe(bundle: Bundle) -> Described:
     """Facts about a compiled manipulator."""
     c = bundle.coordinates
     extra = tuple(f"leg{i + 1}_joint{j + 1}" for i, j in c.extras)
-    counts = []
-    for function in bundle.program.functions.values():
-        n = count_function(function, bundle.leg_counts)
-        counts.append((function.name, n.mul, n.add, n.div, n.sqrt, n.trig))
     return Described(
         bundle.name,
         safe_text(bundle.manipulator.title),
@@ -159,18 +121,9 @@ def describe(bundle: Bundle) -> Described:
         ", ".join((*c.rates, *(f"{e} rate" for e in extra))),
         ", ".join(f"leg {i + 1} joint {j + 1}" for i, j in c.actuators),
         ", ".join(c.wrench),
-        tuple(counts),
         len(bundle.manipulator.legs),
         not all(t.is_closed for t in bundle.derivation.leg_types),
     )
-
-
-def moment_rows(bundle: Bundle) -> tuple[int, ...]:
-    """Rows of H and Hk that are moments: of rotations, and of extra joints that turn."""
-    c, legs = bundle.coordinates, bundle.manipulator.legs
-    turning = [k for k, component in enumerate(c.components) if component >= 3]
-    extras = enumerate(c.extras, len(c.rates))
-    return (*turning, *(k for k, (leg, joint) in extras if legs[leg].joints[joint].turns))
 
 
 def equation_titles(derivation: Derivation) -> dict[str, str]:

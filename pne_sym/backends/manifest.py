@@ -9,8 +9,7 @@ from importlib.metadata import version
 from typing import Any
 
 from pne_sym.backends.bundle import Bundle
-from pne_sym.backends.c_api import Api, api_table
-from pne_sym.backends.describe import describe
+from pne_sym.backends.c_public import CFunction, c_functions
 from pne_sym.backends.registry import default
 from pne_sym.derivation import ParameterField
 from pne_sym.model.full_form import to_full_form
@@ -52,7 +51,7 @@ def _manifest(bundle: Bundle) -> dict[str, Any]:
         "operations": {
             name: _operations(f, bundle.leg_counts) for name, f in bundle.program.functions.items()
         },
-        "functions": {a.name: _function(a) for a in api_table(bundle, describe(bundle))},
+        "functions": {f.name: _function(f) for f in c_functions(bundle)},
         "specification": to_full_form(bundle.manipulator),
         "digests": {"spec": spec_digest(bundle), "derivation": derivation_digest(bundle)},
     }
@@ -91,7 +90,7 @@ def _parameter(f: ParameterField) -> dict[str, Any]:
     return entry
 
 
-def _function(a: Api) -> dict[str, Any]:
+def _function(a: CFunction) -> dict[str, Any]:
     """A public function of the C module: entries of each argument, in order, per state."""
     return {
         "inputs": {i.name: i.size for i in a.inputs},

@@ -14,9 +14,9 @@ import numpy as np
 import pytest
 
 from pne_sym.backends.bundle import Bundle
-from pne_sym.backends.c_api import Api, api_table
 from pne_sym.backends.c_backend import CBackend
-from pne_sym.backends.describe import describe, field_views
+from pne_sym.backends.c_public import CFunction, c_functions
+from pne_sym.backends.describe import field_views
 
 OK, UNREACHABLE, SINGULAR, INVALID, NOT_CONVERGED = range(5)
 WARNINGS = "-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wdouble-promotion -Werror".split()
@@ -72,7 +72,7 @@ class CLibrary:
             "-shared", "-fPIC", source, "-o", library, "-lm")  # fmt: skip
         self.real = np.dtype(_REALS[real])
         self.library = ctypes.CDLL(str(library))
-        self.api: dict[str, Api] = {a.name: a for a in api_table(bundle, describe(bundle))}
+        self.api: dict[str, CFunction] = {f.name: f for f in c_functions(bundle)}
         self.fields = field_views(bundle)
         self.model = ctypes.create_string_buffer(1 << 20)  # larger than any prepared model
         size = sum(int(np.prod(f.shape, dtype=int)) for f in self.fields)
@@ -122,12 +122,12 @@ class CLibrary:
         assert failed == np.count_nonzero(status)
         return outputs, status
 
-    def _inputs(self, api: Api, inputs: Sequence[Array | None]) -> list[Array | None]:
+    def _inputs(self, api: CFunction, inputs: Sequence[Array | None]) -> list[Array | None]:
         assert len(inputs) == len(api.inputs)
         return [None if a is None else np.ascontiguousarray(a, self.real) for a in inputs]
 
     def _pointers(
-        self, api: Api, inputs: Sequence[Array | None], outputs: list[Array]
+        self, api: CFunction, inputs: Sequence[Array | None], outputs: list[Array]
     ) -> list[Any]:
         found: list[Any] = [self.model] if api.has_model else []
         for array in (*inputs, *outputs):

@@ -12,8 +12,7 @@ import pytest
 
 from pne_sym import manipulators
 from pne_sym.backends.bundle import Bundle
-from pne_sym.backends.c_api import Api, api_table
-from pne_sym.backends.describe import describe
+from pne_sym.backends.c_public import CFunction, c_functions
 from tests import models
 from tests.backends.c_library import find_compiler, run, write_sources
 
@@ -40,7 +39,7 @@ static void fill(real *x, size_t size, const real *near)
 """
 
 
-def caller(bundle: Bundle, api: Api) -> str:
+def caller(bundle: Bundle, api: CFunction) -> str:
     """A C function that calls a public function in all its ways and counts the failures."""
     name, model = bundle.name, ["&model"] * api.has_model
     arrays = (*api.inputs, *api.outputs)
@@ -73,7 +72,7 @@ def test_sanitized(which: str, tmp_path: Path) -> None:
     """Constrained, redundantly driven; iterated with extra coordinates and redundant."""
     manipulator = (models.catalogue if which in manipulators.names() else models.drawn)(which)
     bundle = models.bundle(manipulator)
-    table = api_table(bundle, describe(bundle))
+    table = c_functions(bundle)
     source, program = write_sources(bundle, tmp_path), tmp_path / "program"
     calls = [f"    call_{a.name}();" for a in table]
     prepared = f"    const int code = {bundle.name}_prepare(&{bundle.name}_default_params, &model);"

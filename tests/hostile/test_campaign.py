@@ -7,8 +7,7 @@ from pathlib import Path
 import pytest
 
 from pne_sym.backends.bundle import Bundle
-from pne_sym.backends.c_api import api_table
-from pne_sym.backends.describe import describe
+from pne_sym.backends.c_public import c_functions
 from pne_sym.backends.manifest import ManifestBackend
 from tests import models
 from tests.backends.c_library import find_compiler, write_sources
@@ -39,7 +38,7 @@ def campaign(source: Path, build: str, states: int = STATES) -> tuple[list[Line]
 @pytest.mark.parametrize("which", ["fivebar_revolute", "tripod_3rps", "planar_4rpr"])
 def test_the_header_tells_of_every_function(which: str, tmp_path: Path) -> None:
     bundle = models.bundle(models.catalogue(which))
-    table = api_table(bundle, describe(bundle))
+    table = c_functions(bundle)
     found = read_header(written(bundle, tmp_path).with_suffix(".h"))
     assert [f.name for f in found.functions] == [a.name for a in table]
     for function, api in zip(found.functions, table, strict=True):

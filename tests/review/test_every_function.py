@@ -8,8 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from pne_sym.backends.c_api import api_table
-from pne_sym.backends.describe import describe
+from pne_sym.backends.c_public import c_functions
 from pne_sym.review.c_driver import c_calls
 from pne_sym.review.compare import compare
 from pne_sym.review.difference import Verdict
@@ -61,7 +60,7 @@ def test_numpy(name: str) -> None:
 def test_c(name: str) -> None:
     compiled = bundle(catalogue(name))
     calls = c_calls(model(name).functions)
-    for api in api_table(compiled, describe(compiled)):
+    for api in c_functions(compiled):
         own = [c for c in calls if c.function == api.name]
         assert own
         for argument in api.inputs:

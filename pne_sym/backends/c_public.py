@@ -1,0 +1,227 @@
+"""The functions that C users call: the public functions of the program, as C takes them."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from pne_sym.backends.bundle import Bundle
+from pne_sym.backends.c_steps import c_order, runs_in_lanes
+from pne_sym.backends.c_text import Routine, comment, indented, listing, parameter_name
+from pne_sym.model.values import ROUNDING
+from pne_sym.program.count import count_function
+from pne_sym.program.interpret import inputs_read
+from pne_sym.program.public import Argument, Default, PublicFunction
+
+_WITHOUT = ("weights", "length")
+"""Inputs that no C function takes; a function has a second form with weights that it reads."""
+_OUTPUTS = {
+    "constraints": "residual",
+    "constraint_bias": "bias",
+    "qd": "rates",
+    "qdd": "accelerations",
+}
+_LEAST = {False: "  tau has the least norm.", True: "  tau has the least sum of weights tau^2."}
+_ALSO = {
+    "pose": f"  INVALID where R has not orthonormal rows, to {ROUNDING:g} (float: 1e-5), and "
+    "determinant +1."
+}
+"""What C says of its own: names of outputs, tolerances."""
+
+
+@dataclass(frozen=True)
+class CArray:
+    """An input or output array of a function.
+
+    Attributes:
+        name: of the argument.
+        size: number of entries of one state.
+        shape: for people.
+        optional: NULL stands for what the function has by default.
+        positive: entries must be positive.
+    """
+
+    name: str
+    size: int
+    shape: str
+    optional: bool = False
+    positive: bool = False
+
+    @property
+    def text(self) -> str:
+        """The argument with its shape."""
+        null, positive = ", or NULL" * self.optional, ", positive" * self.positive
+        return f"{self.name} ({self.shape}{null}{positive})"
+
+
+@dataclass(frozen=True)
+class CFunction:
+    """A function that C users call; there is one for a state and one for a batch.
+
+    Attributes:
+        name: without prefix.
+        of: the public function.
+        meaning: a text for the header.
+        inputs, outputs: arrays, one state after another in a batch.
+        lanes: whether the batch runs several states side by side.
+    """
+
+    name: str
+    of: PublicFunction
+    meaning: str
+    inputs: tuple[CArray, ...]
+    outputs: tuple[CArray, ...]
+    lanes: bool
+
+    @property
+    def has_model(self) -> bool:
+        """Whether the prepared model is the first argument."""
+        return self.of.needs_model
+
+
+def c_functions(bundle: Bundle) -> tuple[CFunction, ...]:
+    """All functions that users call, in the order of the header."""
+    found = []
+    for function in bundle.program.public:
+        if not function.is_exported or not any(o.value.size for o in function.outputs):
+            continue
+        reads_weights = "weights" in inputs_read(bundle.program, function)
+        found.append(_function(bundle, function, least=reads_weights))
+        if reads_weights:
+            found.append(_function(bundle, function, least=True, weighted=True))
+    return tuple(found)
+
+
+def _function(
+    bundle: Bundle, f: PublicFunction, *, least: bool, weighted: bool = False
+) -> CFunction:
+    given = {a.name: a for a in f.inputs if a.name not in _WITHOUT or weighted}
+    inputs = tuple(_input(given[name]) for name in c_order(list(given)))
+    outputs = tuple(
+        CArray(_OUTPUTS.get(o.label, o.label), o.value.size, _shape(o)) for o in f.outputs
+    )
+    meaning = f.meaning + _LEAST[weighted] * least + _ALSO.get(f.name, "")
+    missing = [a for a in f.inputs if a.name not in given]
+    words = " ".join(a.name for a in missing)
+    notes = [
+        n for n in f.notes if not (words and re.search(rf"\b({'|'.join(words.split())})\b", n))
+    ]
+    notes += [
+        f"The {a.name} is {a.meaning.split(' by default ')[1]}."
+        for a in missing
+        if " by default " in a.meaning
+    ]
+    text = "  ".join((meaning, *notes)).replace("`", "") + _counted(bundle, f)
+    name = f"{f.name}_weighted" if weighted else f.name
+    return CFunction(name, f, text, inputs, outputs, runs_in_lanes(f))
+
+
+def _input(a: Argument) -> CArray:
+    optional = a.default in (Default.ZEROS, Default.HOME_Q) or not a.value.size
+    return CArray(a.name, a.value.size, _shape(a), optional=optional, positive=a.positive)
+
+
+def _shape(a: Argument) -> str:
+    return " x ".join(a.dimensions) or "1"
+
+
+def _counted(bundle: Bundle, f: PublicFunction) -> str:
+    """The operation counts."""
+    if not f.counted:
+        return ""
+    n = count_function(bundle.program.functions[f.counted], bundle.leg_counts)
+    apart = [f.also] if f.also else []
+    apart += ["the iteration of q"] if any(a.name == "q0" for a in f.inputs) else []
+    counts = f"{n.mul} mul, {n.add} add, {n.div} div, {n.sqrt} sqrt, {n.trig} trig"
+    return f"  {'; '.join((counts, *(f'{a} apart' for a in apart)))}."
+
+
+class Caller:
+    """Prints a function that users call: its prototypes, the call for a state and for a batch."""
+
+    def __init__(self, prefix: str, function: CFunction, steps: Routine) -> None:
+        self.prefix, self.f, self.steps = prefix, function, steps
+
+    def prototypes(self) -> list[str]:
+        """Comment and both prototypes."""
+        f = self.f
+        shapes = (", ".join(i.text for i in f.inputs), ", ".join(o.text for o in f.outputs))
+        lines = comment(f"{f.meaning}  In: {shapes[0]}.  Out: {shapes[1]}.")
+        for batch in (False, True):
+            *head, last = self._head(batch=batch)
+            lines += [*head, f"{last};"]
+        return lines
+
+    def definitions(self) -> list[str]:
+        """One state, and a batch."""
+        read = [parameter_name(p) for p in self.steps.parameters]
+        unread = ["model"] * (self.f.has_model and "m" not in read)
+        unread += [i.name for i in self.f.inputs if i.name not in read]
+        return [
+            *self._head(batch=False),
+            "{",
+            "    int code;",
+            *(f"    (void){name};" for name in unread),
+            *indented(self._call("1", "", "&code")),
+            "    return code;",
+            "}",
+            "",
+            *self._head(batch=True),
+            "{",
+            "    size_t failed = 0, i = 0;",
+            *(self._in_lanes() if self.f.lanes else []),
+            "    for (; i < n; ++i) {",
+            *indented(self._single("const int code", "i"), 2),
+            "        failed += record(&code, 1, status ? status + i : NULL);",
+            "    }",
+            "    return failed;",
+            "}",
+        ]
+
+    def _head(self, *, batch: bool) -> list[str]:
+        """Return type, name, parameters."""
+        f, p = self.f, self.prefix
+        parameters = [f"const {p}_model *model"] * f.has_model + ["size_t n"] * batch
+        parameters += [f"const {p}_real *{i.name}" for i in f.inputs]
+        parameters += [f"{p}_real *{o.name}" for o in f.outputs]
+        parameters += ["int *status"] * batch
+        kind = "size_t" if batch else "int"
+        return listing(f"{kind} {p}_{f.name}{'_batch' if batch else ''}(", parameters, ")")
+
+    def _at(self, argument: CArray, count: str) -> str:
+        """An argument at the state with number `count`."""
+        at = f"{argument.name} + {argument.size}*{count}" if count else argument.name
+        return f"{argument.name} ? {at} : NULL" if argument.optional and count else at
+
+    def _call(self, w: str, count: str, code: str) -> list[str]:
+        """A call of the steps; NULL stands for what C has no argument for."""
+        f = self.f
+        given = dict.fromkeys((a.name for a in f.of.inputs), "NULL")
+        given |= {i.name: self._at(i, count) for i in f.inputs}
+        given |= {
+            f"{of.label}_out": self._at(o, count)
+            for of, o in zip(f.of.outputs, f.outputs, strict=True)
+        }
+        names = [parameter_name(p) for p in self.steps.parameters]
+        all_of = given | {"m": "model", "w": w, "code": code}
+        return listing(f"{self.steps.name}(", [all_of[n] for n in names], ");")
+
+    def _single(self, target: str, count: str) -> list[str]:
+        arrays = [self._at(a, count) for a in (*self.f.inputs, *self.f.outputs)]
+        head = f"{target} = {self.prefix}_{self.f.name}("
+        return listing(head, ["model"] * self.f.has_model + arrays, ");")
+
+    def _in_lanes(self) -> list[str]:
+        """As many states as there are lanes at a time; what fails is settled one by one."""
+        return [
+            "    for (; i + LANES <= n; i += LANES) {",
+            "        int codes[LANES];",
+            *indented(self._call("LANES", "i", "codes"), 2),
+            "        for (size_t k = 0; k < LANES; ++k) {",
+            "            if (codes[k] != OK) {",
+            *indented(self._single("codes[k]", "(i + k)"), 4),
+            "            }",
+            "        }",
+            "        failed += record(codes, LANES, status ? status + i : NULL);",
+            "    }",
+        ]

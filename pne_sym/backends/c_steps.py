@@ -1,0 +1,297 @@
+"""Public functions in C: their steps as they stand, for one state or for several side by side.
+
+An array has its states side by side: entry e of state k of w is x[e*w + k].  Operations are an
+expression of entries, a part of an operand, or a function of templates/c.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from pne_sym.backends.bundle import Bundle
+from pne_sym.backends.c_text import WIDTH, Routine, indented, listing, statement
+from pne_sym.backends.scalar import wrap
+from pne_sym.backends.templating import render
+from pne_sym.program import interpret
+from pne_sym.program.public import Apply, Default, PublicFunction, Run, Search, Step, Value
+
+_COPY = "{a}[i]"
+_ENTRIES = {
+    "add": "{a}[i] + {b}[i]",
+    "subtract": "{a}[i] - {b}[i]",
+    "negative": "-{a}[i]",
+    "multiply": "{a}[i]*{b}[i]",
+    "inverse_root": "1/root({a}[i])",
+    "scale_columns": "{a}[i]*{b}[i%({row})]",
+    "choose_length": "{b}[i] > 0 ? {b}[i] : {a}[i] > TINY*{a}[{w} + i] ? {a}[i] : {a}[{w} + i]",
+    "extend": "i < {all_a} ? {a}[i] : 0",
+    "impossible": "R(NAN)",
+    **dict.fromkeys(("divide_rows", "add_at", "clear_at", "add_forces", "wrap_turns"), _COPY),
+}
+"""Operations whose result is first, or altogether, an expression for every entry i."""
+_LANES = {
+    "impossible": "check({size}, {w}, {x}, why.singular);",
+    "divide_rows": "divide_rows({count}, {n}, {w}, {places}, {b}, {x});",
+    "add_at": "add_at({count}, {row}, {places}, {b}, {x});",
+    "clear_at": "clear_at({count}, {row}, {places}, {x});",
+    "add_forces": "add_forces({count}, {n}, {w}, {places}, {b}, {c}, {x});",
+    "wrap_turns": "wrap_turns({count}, {row}, {places}, {x});",
+    "take": "take({count}, {row}, {places}, {a}, {x});",
+    "take_columns": "take_columns({m}, {n}, {count}, {w}, {places}, {a}, {x});",
+    "times": "product({m}, {n}, 1, {w}, {a}, {b}, {x});",
+    "product": "product({m}, {n}, {p}, {w}, {a}, {b}, {x});",
+    "transposed": "transpose({m}, {n}, {w}, {a}, {x});",
+    "half_form": "half_form({m}, {w}, {a}, {b}, {x});",
+    "beside": "beside({m}, {row}, {row_b}, {a}, {b}, {x});",
+    "join": "beside(1, {all_a}, {all_b}, {a}, {b}, {x});",
+    "saddle": "saddle({m}, {p}, {w}, {a}, {b}, {x});",
+    "solve": "solve({m}, {w}, {a}, {b}, work, {x}, why.singular);",
+}
+"""Calls for states side by side."""
+_SINGLE = {
+    "solve": "solve_state({m}, {a}, {b}, work, {x}, why.singular);",
+    "least_norm": "least_norm({m}, {n}, {a}, {b}, {x}, why.singular);",
+    "resolve": "resolve({m}, {n}, {first}, {a}, {x}, {y}, why.singular);",
+    "null_basis": "null_basis({m}, {n}, {first}, {a}, {x});",
+    "singular_values": "singular_values({m}, {n}, {a}, {x});",
+    "rotation_of_quaternion": "rotation_of_quaternion({a}, {x});",
+    "quaternion_of_rotation": "quaternion_of_rotation({a}, {x});",
+    "angle_of_rotation": "angle_of_rotation({a}, {x});",
+    "rotation_of_angle": "rotation_of_angle({a}, {x});",
+    "quaternion_of_rpy": "quaternion_of_rpy({a}, {x});",
+    "quaternion_rate": "quaternion_rate({a}, {b}, {x});",
+    "turn_quaternion": "turn_quaternion({a}, {b}, {x});",
+}
+"""Calls for one state."""
+_BIG = ("least_norm", "resolve", "null_basis", "singular_values")
+_PARTS = ("same", "entry", "split", "take", "extend")
+"""Operations whose results may be parts of the operand."""
+OPERATIONS = frozenset((*_ENTRIES, *_LANES, *_SINGLE, *_PARTS, "search"))
+_FILL = {Default.ZEROS: "0", Default.ONES: "1"}
+
+
+def runs_in_lanes(function: PublicFunction) -> bool:
+    """Whether a batch runs several states side by side: what it does once can be."""
+    runs = [step for step in function.steps if isinstance(step, Run)]
+    return (
+        function.is_exported
+        and len(runs) == 1
+        and not function.operations - _LANES.keys() - _ENTRIES.keys() - set(_PARTS)
+    )
+
+
+def biggest(bundle: Bundle) -> int:
+    """Most rows or columns of the matrices of which norms, ranks and singular values are taken."""
+    program = bundle.program
+    steps = [step for f in program.public for step in f.steps]
+    shapes = [program.shapes[f"gap_{c.leg_type}"][1:] for c in program.closures]
+    shapes += [s.operands[0].shape for s in steps if isinstance(s, Apply) and s.operation in _BIG]
+    shapes += [f.outputs[0].value.shape for f in program.public if not f.is_exported]
+    return max(n for shape in shapes for n in shape)
+
+
+class Steps:
+    """Prints what a public function does.
+
+    Args:
+        bundle: of the model.
+        function: what is printed.
+        runs: routines that run the functions of the program, by name.
+        parts: routines of the functions that it searches with, by name.
+    """
+
+    def __init__(
+        self,
+        bundle: Bundle,
+        function: PublicFunction,
+        runs: Mapping[str, Routine],
+        parts: Mapping[str, Routine],
+    ) -> None:
+        self.bundle, self.f, self.runs, self.parts = bundle, function, runs, parts
+        self.lanes = runs_in_lanes(function)
+        self.w = "w" if self.lanes else "1"
+        self.read = interpret.inputs_read(bundle.program, function)
+        self.at = {a.name: a.name for a in function.inputs}
+        self.buffers: list[str] = []
+        self.tables: list[str] = []
+        self.work = 0
+        self.before: list[str] = []
+
+    def routine(self) -> Routine:
+        """Outputs, state by state, and codes of w states from inputs, state by state."""
+        lines = [f"start({self.w}, &why);", *self._inputs()]
+        for step in self.f.steps:
+            lines += self._step(step)
+        for o in self.f.outputs:
+            lines.append(f"check({o.value.size}, {self.w}, {self.at[o.name]}, why.overflow);")
+        lines.append(f"judge(&why, {self.w}, code);")
+        for o in self.f.outputs:
+            at = f"{self.at[o.name]}, {o.value.size}, {self.w}, code"
+            lines.append(f"deliver({at}, {o.label}_out);")
+        if self.work:
+            self.buffers.append(self._buffer("work", self.work))
+        head = [*self.tables, *(listing("real ", self.buffers, ";") if self.buffers else [])]
+        parameters = [
+            "const prepared *m",
+            "size_t w",
+            *(f"const real *{name}" for name in c_order([a.name for a in self.f.inputs])),
+            *(f"real *{o.label}_out" for o in self.f.outputs),
+            "int *code",
+        ]
+        body = [*head, "verdict why;", *lines]
+        kind = "INLINE" if self.lanes else "static"
+        return Routine.of(f"{self.f.name}_any", parameters, body, kind)
+
+    # ---- arrays ------------------------------------------------------------------------------
+
+    def _by(self, size: int) -> str:
+        """So many entries of every state."""
+        return f"{size}*w" if self.lanes else str(size)
+
+    def _buffer(self, name: str, size: int) -> str:
+        return f"{name}[{size}*LANES]" if self.lanes else f"{name}[{size}]"
+
+    def _made(self, value: Value) -> str:
+        """An array for a value."""
+        self.at[value.name] = value.name if value.size else "NULL"
+        if value.size:
+            self.buffers.append(self._buffer(value.name, value.size))
+        return self.at[value.name]
+
+    def _inputs(self) -> list[str]:
+        """Inputs that are read, their states side by side; q0 is taken where loops are closed."""
+        lines = []
+        for a in self.f.inputs:
+            if a.name not in self.read or a.default is Default.HOME_Q or not a.value.size:
+                continue
+            given = f"{a.value.size}, {self.w}, {a.name}"
+            if a.positive:
+                lines.append(f"require_positive({given}, why.invalid);")
+            if a.default or self.lanes:
+                self.buffers.append(self._buffer(f"{a.name}_in", a.value.size))
+            if a.default:
+                fill = _FILL[a.default]
+                lines.append(f"{a.name} = optional({given}, {fill}, {a.name}_in, why.invalid);")
+            elif self.lanes:
+                lines.append(f"{a.name} = side_by_side({given}, {a.name}_in, why.invalid);")
+            else:
+                lines.append(f"check({given}, why.invalid);")
+        return lines
+
+    # ---- steps -------------------------------------------------------------------------------
+
+    def _step(self, step: Step) -> list[str]:
+        if isinstance(step, Run):
+            return self._run(step)
+        if isinstance(step, Search):
+            return self._search(step)
+        return self._part(step) or self._applied(step)
+
+    def _run(self, step: Run) -> list[str]:
+        function, lines = self.bundle.program.functions[step.function], []
+        if "q" in function.inputs and "joints" not in self.at:
+            joints = Value("joints", (self.bundle.coordinates.sizes["NJ"],))
+            lines.append(f"close_loops(m, {self.w}, X, q0, {self._made(joints)}, &why);")
+        arrays = {a: self._made(t) for a, t in zip(function.arrays, step.targets, strict=True)}
+        call = self.runs[step.function].call_with({"w": self.w, "t": "&why", **arrays})
+        return [*lines, *wrap(call, WIDTH - 4, "    ")]
+
+    def _part(self, step: Apply) -> list[str]:
+        """Results as parts of the operand, where they are."""
+        if step.operation not in _PARTS:
+            return []
+        (value,), numbers, first = step.operands, step.numbers, (*step.numbers, 0)[0]
+        whole = step.targets[0].shape == value.shape
+        row = value.size // max(value.shape[0], 1)
+        if step.operation == "split":
+            places = [0, first]
+        elif step.operation in ("same", "entry") or (step.operation == "extend" and whole):
+            places = [first if step.operation == "entry" else 0]
+        elif step.operation == "take" and numbers == tuple(range(first, first + len(numbers))):
+            places = [first]
+        else:
+            return []
+        lines = []
+        for target, place in zip(step.targets, places, strict=True):
+            self.at[target.name] = target.name
+            offset = f" + {self._by(place * row)}" if place else ""
+            lines.append(f"const real *const {target.name} = {self.at[value.name]}{offset};")
+        return lines
+
+    def _applied(self, step: Apply) -> list[str]:
+        """An operation at its operands."""
+        name, targets = step.operation, [self._made(t) for t in step.targets]
+        if not any(t.size for t in step.targets):
+            return []
+        fields = self._fields(step, targets)
+        lines = []
+        if name in _ENTRIES:
+            entry = _ENTRIES[name].format(**fields) if step.operands[0].size else "0"
+            body = indented(statement(f"{targets[0]}[i] = {entry}"))
+            lines += [f"for (size_t i = 0; i < {fields['all']}; ++i) {{", *body, "}"]
+        call = (_LANES if self.lanes else _LANES | _SINGLE).get(name, "")
+        if "{places}" in call:
+            if not step.numbers:
+                return lines
+            table = f"places_{len(self.tables)}"
+            rows = ", ".join(map(str, step.numbers))
+            self.tables.append(f"static const size_t {table}[] = {{{rows}}};")
+            fields["places"] = table
+        return [*lines, *(wrap(call.format(**fields), WIDTH - 4, "    ") if call else [])]
+
+    def _fields(self, step: Apply, targets: Sequence[str]) -> dict[str, object]:
+        """What calls are made of."""
+        m, n = (*step.operands[0].shape, 1, 1)[:2]
+        p = (*step.operands[1].shape, 1, 1)[1] if len(step.operands) > 1 else 1
+        size = step.targets[0].size
+        if step.operation == "solve":
+            self.work = max(self.work, m * padded(m))
+        return {
+            **dict(zip("abc", (self.at[o.name] for o in step.operands), strict=False)),
+            **dict(zip("xy", targets, strict=False)),
+            **{f"all_{c}": self._by(o.size) for c, o in zip("abc", step.operands, strict=False)},
+            "m": m, "n": n, "p": p, "w": self.w, "size": size, "all": self._by(size),
+            "row": self._by(n), "row_b": self._by(p), "count": len(step.numbers),
+            "first": (*step.numbers, 0)[0],
+        }  # fmt: skip
+
+    # ---- searches ----------------------------------------------------------------------------
+
+    def _search(self, step: Search) -> list[str]:
+        """A call of the search, whose text stands before the function."""
+        residual, slope = self.parts[step.residual], self.parts[step.slope]
+        names = {p.rsplit("*", 1)[-1] for r in (residual, slope) for p in r.parameters}
+        inputs = [a.name for a in self.f.inputs if a.name in names and a.name != "X"]
+        others = c_order(inputs)
+        n = self.bundle.coordinates
+        found = {"X": "found", "code": "&code"}
+        text = render(
+            "c/search.c.jinja",
+            name=step.residual,
+            parameters=", ".join(("const prepared *m", *(f"const real *{o}" for o in others))),
+            gaps=next(f for f in self.bundle.program.public if f.name == step.residual)
+            .outputs[0].value.size,
+            trials=interpret.HALVINGS if step.halving else 1,
+            close="CLOSED" if step.halving else "MET",
+            steps=interpret.SEARCH_STEPS,
+            residual=residual.call_with({**found, "gap_out": "gap"}),
+            slope=slope.call_with({**found, "slope_out": "slope"}),
+            trial=residual.call_with({"X": "trial", "code": "&tried", "gap_out": "next"}),
+            sizes=n.sizes,
+        )  # fmt: skip
+        self.before.append(text)
+        arguments = ", ".join(("m", *others, step.start.name, self._made(step.target)))
+        return [f"blame(search_{step.residual}({arguments}), &why);"]
+
+
+def padded(n: int) -> int:
+    """Length of a row of a system of n equations with its right side, a multiple of 4."""
+    return (n + 4) // 4 * 4
+
+
+def c_order(names: Sequence[str]) -> list[str]:
+    """Inputs in the order of the C: a first guess stands after the pose."""
+    rest = [name for name in names if name != "q0"]
+    if "q0" in names:
+        rest.insert(next((k for k, n in enumerate(rest, 1) if n in ("X", "X0")), 0), "q0")
+    return rest

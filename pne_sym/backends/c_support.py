@@ -1,0 +1,33 @@
+"""What of the written-out C in templates/c a module needs."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+
+_MADE = re.compile(r"^(?:(?:INLINE|APART|static)\b[^(;]*?\b(\w+)\(|#define (\w+))", re.MULTILINE)
+_NAMED = re.compile(r"\b(\w+)\(|\b([A-Z]\w+)\b")
+
+
+def needed(support: str, texts: Iterable[str]) -> str:
+    """The functions and macros that texts name, and those that these name.
+
+    Args:
+        support: C source of functions and macros, blank lines between them and nowhere else.
+        texts: C source that uses some of them.
+    """
+    parts = support.strip().split("\n\n")
+    made = {name: part for part in parts for name in _names(_MADE, part)}
+    open_ = [name for text in texts for name in _names(_NAMED, text) if name in made]
+    found = set[str]()
+    while open_:
+        part = made[open_.pop()]
+        if part not in found:
+            found.add(part)
+            open_ += [name for name in _names(_NAMED, part) if name in made]
+    return "\n\n".join(part for part in parts if part in found)
+
+
+def _names(pattern: re.Pattern[str], text: str) -> set[str]:
+    code = re.sub(r"/\*.*?\*/", " ", text, flags=re.DOTALL)
+    return {name for groups in pattern.findall(code) for name in groups if name}
