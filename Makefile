@@ -28,6 +28,10 @@ HOSTILE_STATES ?= 1000000
 HOSTILE_SEED ?= 0
 HOSTILE_BUILDS ?= fast,float,memory,thread
 
+# Faults planted by `make mutants`: how many at a time, and which (all; or names such as program lowering-3).
+MUTANT_JOBS ?= 2
+MUTANTS ?=
+
 # Models whose C Frama-C analyses.
 PROVED ?= fivebar_revolute planar_3rpr tripod_3rps stewart
 
@@ -120,6 +124,10 @@ fuzz: $(VENV)/test.stamp ## Give pne-gen 100,000 broken specifications (FUZZ_CAS
 .PHONY: random
 random: $(VENV)/test.stamp ## Derive RANDOM_COUNT (600) mechanisms drawn from RANDOM_SEED on, compare all
 	$(BIN)/python -m tests.random.tally --count $(RANDOM_COUNT) --seed $(RANDOM_SEED) --jobs 2
+
+.PHONY: mutants
+mutants: $(VENV)/test.stamp ## Plant about 200 faults, one at a time in a copy (MUTANTS, MUTANT_JOBS): tests must find each
+	$(BIN)/python -m tests.mutants.run --jobs $(MUTANT_JOBS) --only $(MUTANTS)
 
 .PHONY: analyse
 analyse: ## Read all generated C with the analysers (check-analysers reads a sample)

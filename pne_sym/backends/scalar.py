@@ -70,7 +70,8 @@ class ScalarPrinter(StrPrinter):
         text = ""
         for term in terms:
             negative = term.could_extract_minus_sign()
-            body = self.parenthesize(-term if negative else term, PRECEDENCE["Add"])
+            level = PRECEDENCE["Mul" if negative else "Add"]  # a sum behind a minus needs them
+            body = self.parenthesize(-term if negative else term, level)
             text += (
                 f" - {body}"
                 if negative and text

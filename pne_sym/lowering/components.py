@@ -268,19 +268,12 @@ class Lowering:
         )
 
     def _vector_axial(self, expr: Any, frame: str, hint: str) -> Triple:
+        """Of B S with symmetric S alone: nothing else has an axial vector in a derivation."""
         inner = expr.args[0]
-        if isinstance(inner, n.Compose) and getattr(inner.args[1], "is_symmetric", False):
-            return self._moment_of(
-                self.tensor(inner.args[0], frame), self.tensor(inner.args[1], frame), hint
-            )
-        t = self.tensor(expr.args[0], frame)
-        return tuple(
-            self.b.add(
-                (t[(i + 2) % 3][(i + 1) % 3], -t[(i + 1) % 3][(i + 2) % 3]),
-                f"{hint}_{XYZ[i]}" if hint else "",
-            )
-            for i in range(3)
-        )
+        if not (isinstance(inner, n.Compose) and getattr(inner.args[1], "is_symmetric", False)):
+            raise TypeError("no components for the axial vector of a general tensor")
+        B, S = (self.tensor(factor, frame) for factor in inner.args)
+        return self._moment_of(B, S, hint)
 
     def _moment_of(self, B: Tensor9, S: Tensor9, hint: str) -> Triple:
         """Axial(B S) for symmetric S, products of inertia taken out once."""

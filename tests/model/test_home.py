@@ -152,6 +152,14 @@ def test_revolute_displacements_are_wrapped() -> None:
     assert from_mapping(spec, "test").home.q[0] == pytest.approx(-0.75 * math.pi, abs=1e-14)
 
 
+def test_half_a_turn_is_positive() -> None:
+    spec = planar()
+    h = math.sqrt(0.5)
+    spec["legs"][0]["base_frame"] = [[-h, h], [-h, -h]]
+    spec["home"]["q"][0][0] = -math.pi
+    assert from_mapping(spec, "test").home.q[0] == math.pi
+
+
 def test_an_extra_coordinate_agrees_with_its_displacement() -> None:
     form = spoilt(form_of("planar_redundant"), "home.X.3", 0.2)
     with pytest.raises(SpecError, match=r"home.X: extra coordinate 0.2; expected the displacement"):

@@ -83,6 +83,8 @@ SPATIAL: list[tuple[str, Any, str]] = [
     ("legs.0.joints.0", {"kind": "U", "axis": "z"}, "a joint of kind U has axes = [...]"),
     ("legs.0.joints.0", {"kind": "U", "axes": ["z"]}, "2 unit vectors, from the base side (1"),
     ("legs.0.joints.0", {"kind": "U", "axes": ["z", "z"]}, "axes perpendicular to the next"),
+    ("legs.0.joints.0", {"kind": "U", "axes": ["z", [0, 0.6, 0.8]]}, "axes perpendicular to the"),
+    ("legs.0.joints.0", {"kind": "U", "axes": ["z", [0, 1, 1e-5]]}, "axes perpendicular to the"),
     (
         "legs.0.joints.0",
         {"kind": "U", "axes": ["z", "y"], "actuated": True},

@@ -12,6 +12,7 @@ import pytest
 from pne_sym.model.errors import SpecWarning
 from pne_sym.model.manipulator import IDENTITY3, ZERO3, ZERO33, Joint, JointKind, Manipulator
 from pne_sym.model.reader import checked, from_mapping, from_text, to_full_form
+from pne_sym.model.rotation import rotation_from_rpy
 from tests.model.examples import ABSENT, planar, spatial, spoilt
 
 X, Y, Z = IDENTITY3
@@ -141,6 +142,12 @@ def test_frames_by_angles() -> None:
     spec = spatial(platform_joint="S")
     quarter = read(spoilt(spec, "legs.0.base_frame", {"rpy_deg": [0, 0, 90]}))
     assert quarter.legs[0].base_frame == ((0, -1, 0), (1, 0, 0), (0, 0, 1))
+
+
+@pytest.mark.parametrize("quarters", range(-3, 8))
+def test_quarter_turns_are_exact(quarters: int) -> None:
+    found = np.array(rotation_from_rpy((0.0, 0.0, 90.0 * quarters), degrees=True))
+    np.testing.assert_array_equal(found, np.rint(_turn(2, 0.5 * math.pi * quarters)))
 
 
 def test_rpy_is_about_fixed_axes() -> None:

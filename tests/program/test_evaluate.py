@@ -169,6 +169,20 @@ def test_guards_that_fail_are_named() -> None:
     np.testing.assert_array_equal(failure.failed, [[False, False], [False, False], [False, True]])
 
 
+@pytest.mark.parametrize("gap", [1e-10, 1e-6, 1e-3])
+def test_legs_are_measured_by_their_length(gap: float) -> None:
+    """The guard is on the square of a distance, and so is its tolerance."""
+    name = "planar_3rpr"
+    manipulator, values = models.catalogue(name), prepared(name)
+    X, leg = np.array([manipulator.home.X]), manipulator.legs[0]
+    c, s = np.cos(X[0, 2]), np.sin(X[0, 2])
+    turn = np.array([[c, -s], [s, c]])
+    X[0, :2] = np.array(leg.base_point[:2]) - turn @ np.array(leg.platform_point[:2])
+    X[0, 0] += gap
+    found = evaluate(models.bundle(manipulator).program, "M", values, {"X": X})
+    assert found.status.tolist() == [Status.SINGULAR if gap < 1e-9 else Status.OK]
+
+
 def test_expressions() -> None:
     x, y = sp.symbols("x y", real=True)
     at: dict[str, Any] = {"x": np.array([0.3, 4.0]), "y": np.array([2.0, -0.5])}
