@@ -127,6 +127,8 @@ def prepare_body(bundle: Bundle) -> list[str]:
 _CHECKS: dict[Rule, tuple[str, ...]] = {
     Rule.FREE: (),
     Rule.MASS: ("none_negative",),
+    Rule.POSITIVE: ("all_positive",),
+    Rule.NONZERO: ("none_zero",),
     Rule.UNIT: ("all_unit",),
     Rule.INERTIA: ("all_inertias",),
     Rule.PLANAR_INERTIA: ("all_planar_inertias",),

@@ -41,6 +41,9 @@ class Law(enum.StrEnum):
     REDUCTION = "reduction to the connection point"
     RULES = "Rules I and II"
     ASSEMBLY = "equilibrium of the platform"
+    FRICTION = "friction"
+    SPRING = "spring"
+    ROTOR = "rotor"
     ENERGY = "energy"
     LUMPING = "lumped parameter"
 

@@ -28,6 +28,10 @@ class Rule(enum.StrEnum):
     """A rotation about z."""
     UNIT = "unit"
     """Of length 1."""
+    POSITIVE = "positive"
+    """At least `values.SNAP`: its square must not vanish."""
+    NONZERO = "nonzero"
+    """Of that size at least."""
 
 
 @dataclass(frozen=True)

@@ -50,6 +50,7 @@ GROUPS: tuple[tuple[tuple[str, tuple[str, ...]], ...], ...] = (
         ("legs", ("leg_force", "drive", "constraint_direction")),
     ),
     (("potential", ("potential",)),),
+    (("dissipation", ("dissipation",)),),
     (("condition", ("lengths",)),),
 )
 
@@ -403,12 +404,18 @@ def _shapes(derivation: Derivation) -> dict[str, tuple[int, ...]]:
         "drive": (n["NU"], wide),
         "constraint_direction": (n["NC"], wide),
         "potential": (1,),
+        **({"dissipation": (1,)} if _is_made(derivation, "dissipation") else {}),
         "constraints": (n["NC"],),
         "constraint_bias": (n["NC"],),
         "lengths": (2,),
         "pivots": (legs,),
         "reach": (legs,),
     }
+
+
+def _is_made(derivation: Derivation, array: str) -> bool:
+    """Whether something stands in an array that not every mechanism has."""
+    return any(output.array == array for output in derivation.outputs)
 
 
 def _blocks(

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+import sympy as sp
+
 from pne_sym.derivation import (
     Book,
     Coordinates,
@@ -21,6 +23,7 @@ from pne_sym.mechanics.completion import completion_at_home
 from pne_sym.mechanics.conditioning import write_lengths
 from pne_sym.mechanics.constraints import axis_across, force_vanishes
 from pne_sym.mechanics.inverse_kinematics import InverseKinematics, given_displacements, invert
+from pne_sym.mechanics.joint_forces import write_joint_forces
 from pne_sym.mechanics.leg_dynamics import DynamicsWriter, introduce_bodies
 from pne_sym.mechanics.leg_geometry import LegGeometry, build_geometry
 from pne_sym.mechanics.leg_motion import MotionWriter
@@ -62,6 +65,7 @@ def derive(manipulator: Manipulator) -> Derivation:
     writer.equilibrium()
     writer.blocks()
     _potential(book, platform, writer, [leg for leg, _ in legs], [k for _, k in legs])
+    _dissipation(book, [leg for leg, _ in legs])
     write_lengths(book, [leg.g for leg, _ in legs])
     book.coordinates = _coordinates(manipulator, space, [leg for leg, _ in legs])
     equal = (pair for leg, _ in legs for pair in leg.g.same_axes())
@@ -130,8 +134,9 @@ def _derive_leg(
         + (_COMPOSITE if g.composite else "")
         + (_MOMENTS if g.pairs else "")
     )
+    forces = write_joint_forces(book, g, motion, kinematics.q, prefix)
     book.chapter(f"{prefix}-N", f"Newton-Euler of a {title} leg", text, prefix)
-    dynamics = DynamicsWriter(book, g, platform, motion, kinematics, bodies).run()
+    dynamics = DynamicsWriter(book, g, platform, motion, kinematics, bodies, forces).run()
     leg = Leg(g, motion, dynamics)
     _joint_outputs(book, manipulator, leg, inverse)
     if not inverse.is_closed:
@@ -299,6 +304,19 @@ def _closure_outputs(book: Book, leg: Leg, frame: str, space: TaskSpace) -> None
                 put(f"jacobian_{name}", Dot(g.spin(j), n), ((0, i * width + k),))
 
 
+def _dissipation(book: Book, legs: list[Leg]) -> None:
+    """Power that friction takes, where there is any."""
+    taken = [(leg.name, leg.dynamics.forces.dissipation) for leg in legs]
+    total = sp.Add(*(sum_over_legs(power, name) for name, power in taken))
+    if total == 0:
+        return
+    book.chapter("D", "Dissipation", "Friction times rate, of all joints; never negative.")
+    power = book.define(
+        "dissipation", total, "D", "power that friction takes", Law.FRICTION, unit="W"
+    )
+    book.outputs.append(Output("dissipation", power, ((0, 0),)))
+
+
 def _potential(
     book: Book,
     platform: PlatformMotion,
@@ -307,7 +325,9 @@ def _potential(
     kinematics: list[MotionWriter],
 ) -> None:
     """Potential energy, zero at the base origin."""
-    book.chapter("V", "Potential energy", "Weight times height, zero at the base origin.")
+    sprung = any(leg.dynamics.forces.stored for leg in legs)
+    text = "Weight times height, zero at the base origin" + ", and the energy of springs" * sprung
+    book.chapter("V", "Potential energy", f"{text}.")
     total: Any = -Dot(platform.gravity, writer.mass * platform.t + writer.moment)
     for leg, motion in zip(legs, kinematics, strict=True):
         g = leg.g
@@ -319,6 +339,7 @@ def _potential(
         moment = vector_sum(terms)
         if moment != ZeroVector:
             total = total + sum_over_legs(-Dot(platform.gravity, moment), leg.name)
+        total = total + sum_over_legs(leg.dynamics.forces.potential, leg.name)
     energy = book.define("potential", total, "V", "potential energy", Law.ENERGY, unit="J")
     book.outputs.append(Output("potential", energy, ((0, 0),)))
 

@@ -19,6 +19,7 @@ import sympy as sp
 
 from pne_sym.derivation import Book, Law, ParameterField, Quantity, Role, Rule
 from pne_sym.mechanics.composite import CompositeWriter
+from pne_sym.mechanics.joint_forces import JointForces
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.leg_motion import MotionWriter
 from pne_sym.mechanics.linear_writer import LegMotion, LinearWriter
@@ -69,6 +70,7 @@ class LegDynamics:
     Attributes:
         bodies: links with inertia.
         tip_mass: mass gathered at the connection point.
+        forces: friction, springs and rotors of its joints.
         force: c, the reduced leg force without actuation (Eq. 3).
         columns: actuated joint -> (w_j, extra rows) of H.
         Q, U: reduced closed form F = h tau - Q a_p - U (Eq. 4).
@@ -81,6 +83,7 @@ class LegDynamics:
 
     bodies: list[LinkBody]
     tip_mass: Any
+    forces: JointForces
     force: Any = None
     true_force: Any = None
     Q: Any = None
@@ -226,8 +229,10 @@ class DynamicsWriter:
         motion: LegMotion,
         kinematics: MotionWriter,
         bodies: list[LinkBody],
+        forces: JointForces,
     ) -> None:
         self.book, self.g, self.p, self.motion, self.k = book, g, platform, motion, kinematics
+        self.forces = forces
         self.write = LinearWriter(book, g, motion)
         self.bodies = bodies
 
@@ -445,7 +450,7 @@ class DynamicsWriter:
         )
         self.tip_moment = Cross(tip.first_moment, relative[tip.joint]) if tip else ZeroVector
         gamma = self._recursion(forces, relative)
-        result = LegDynamics(self.bodies, tip.mass if tip else sp.S.Zero)
+        result = LegDynamics(self.bodies, tip.mass if tip else sp.S.Zero, self.forces)
         self._solve(result, gamma, phi_tip, relative.get(tip.joint) if tip else None)
         for j in motion.ydd:
             self._extra_row(result, j, gamma)
@@ -541,13 +546,15 @@ class DynamicsWriter:
         )
 
     def _freedom(self, j: int, component: Any) -> Any:
-        if component == 0:
+        other = self.forces.along(j)
+        if component == 0 and other == 0:
             return sp.S.Zero
         return self.write.define(
             f"Gamma_{j}",
-            component,
+            component + other,
             rf"\Gamma_{{{j}}}",
-            f"{self.g.kind(j).effort} axis {j} of the distal links' inertia and weight",
+            f"{self.g.kind(j).effort} axis {j} of the distal links' inertia and weight"
+            + ", and of what acts in the joint" * (other != 0),
             Law.FREEDOM,
             unit=self.g.kind(j).effort_unit,
             coefficient_latex=rf"\boldsymbol\gamma_{{{j}}}",
@@ -558,6 +565,7 @@ class DynamicsWriter:
     def _accelerated(self, j: int) -> Any:
         """What of Gamma_j depends on the accelerations of the joints and of the tip."""
         total = sp.Add(*(self.inertia.get((j, k), 0) * qdd for k, qdd in self.motion.qdd.items()))
+        total = total + self.forces.accelerating(j)
         return total + Dot(self.g.spin(j), self.tip_moment)
 
     def _solve(self, result: LegDynamics, gamma: dict[int, Any], phi: Any, a_tip: Any) -> None:

@@ -2,7 +2,8 @@
 
 Structure is what contract-wise cannot change with a parameter's value: joint
 kinds and order, driven and extra marks, axes along coordinate directions,
-relations between neighbouring axes, zero offsets, massless links.
+relations between neighbouring axes, zero offsets, massless links; which friction,
+springs and motors there are.
 """
 
 from __future__ import annotations
@@ -83,6 +84,7 @@ def structure_key(leg: Leg) -> tuple[object, ...]:
             joint.link.is_massless,
             _axis_key(joint.axis),
             tuple(component == 0.0 for component in joint.offset),
+            _effects_key(joint),
         )
         for joint in leg.joints
     )
@@ -96,6 +98,15 @@ def structure_key(leg: Leg) -> tuple[object, ...]:
         tuple(component == 0.0 for component in end.offset),
         _axis_key(end.axis_link),
         _axis_key(end.axis_platform),
+    )
+
+
+def _effects_key(joint: Joint) -> tuple[object, ...]:
+    """Which parameters there are of friction, spring and motor; their values are live."""
+    effects = (joint.friction, joint.spring, joint.actuator)
+    return tuple(
+        effect and tuple(name for name, value in vars(effect).items() if value is not None)
+        for effect in effects
     )
 
 

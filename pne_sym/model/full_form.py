@@ -13,6 +13,7 @@ from pne_sym.model.manipulator import (
     Matrix3,
     PlatformJoint,
 )
+from pne_sym.model.read_effects import FIELDS as EFFECTS
 
 Plain = dict[str, object]
 _PITCHED = {kind.letter for kind in JointKind if kind.pitched}
@@ -55,11 +56,19 @@ def _joint(joint: Joint) -> Plain:
     }
     if str(joint.kind) in _PITCHED:
         form["pitch"] = joint.pitch
-    return form | {
+    form |= {
         "actuated": joint.actuated,
         "extra": joint.extra,
         "link": _body(joint.link),
     }
+    effects = {name: getattr(joint, name) for name in EFFECTS}
+    return form | {name: _present(each) for name, each in effects.items() if each is not None}
+
+
+def _present(effect: object) -> Plain:
+    """The fields that are there."""
+    fields = {name: value for name, value in vars(effect).items() if value is not None}
+    return {n: list(v) if isinstance(v, tuple) else v for n, v in fields.items()}
 
 
 def _platform_joint(joint: PlatformJoint) -> Plain:

@@ -12,9 +12,11 @@ from pne_sym.model.joint_kinds import WrittenJoint
 from pne_sym.model.kind import letters
 from pne_sym.model.manipulator import ZERO3, Joint, PlatformJoint, Vector3
 from pne_sym.model.platform_kinds import PlatformJointKind
+from pne_sym.model.read_effects import FIELDS as EFFECTS
+from pne_sym.model.read_effects import read_effects
 from pne_sym.model.values import ROUNDING, axis, flags, number, offset, rotation
 
-FIELDS = ("kind", "axis", "axes", "offset", "pitch", "actuated", "extra", "link")
+FIELDS = ("kind", "axis", "axes", "offset", "pitch", "actuated", "extra", "link", *EFFECTS)
 PLATFORM_FIELDS = ("kind", "offset", "axis_link", "axis_platform", "rotation")
 MAX_JOINTS = 12
 
@@ -49,6 +51,7 @@ def read_joint(entry: Entry, *, plane: bool) -> tuple[Joint, ...]:
     link = table.get("link")
     last_link = read_body(link, plane=plane) if link else MASSLESS
     pitch = _pitch(table, kind)
+    effects = read_effects(table, actuated, mixed=len(set(kinds)) > 1)
     last = len(kinds) - 1
     return tuple(
         Joint(
@@ -59,6 +62,7 @@ def read_joint(entry: Entry, *, plane: bool) -> tuple[Joint, ...]:
             actuated=actuated[i],
             extra=extra[i],
             link=last_link if i == last else MASSLESS,
+            **vars(effects[i]),
         )
         for i in range(len(kinds))
     )

@@ -14,6 +14,7 @@ from __future__ import annotations
 import enum
 from dataclasses import dataclass
 
+from pne_sym.model.effects import Actuator, Friction, Limits, Spring
 from pne_sym.model.joint_kinds import JointKind
 from pne_sym.model.platform_kinds import PlatformJointKind
 from pne_sym.model.platform_kinds.interface import Closure, Direction
@@ -87,6 +88,7 @@ class Joint:
         actuated: the joint is driven.
         extra: the displacement is a generalised coordinate of its own.
         link: inertia of the link that the joint moves, in the link's frame.
+        friction, spring, actuator, limits: what acts in the joint, and its bounds; None: absent.
     """
 
     kind: JointKind
@@ -96,6 +98,10 @@ class Joint:
     actuated: bool = False
     extra: bool = False
     link: Body = Body()
+    friction: Friction | None = None
+    spring: Spring | None = None
+    actuator: Actuator | None = None
+    limits: Limits | None = None
 
     @property
     def turns(self) -> bool:

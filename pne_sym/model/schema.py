@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import json
 
-from pne_sym.model import body, home, joints, legs, names, reader, symbols, values
+from pne_sym.model import body, home, joints, legs, names, read_effects, reader, symbols, values
 from pne_sym.model.joint_kinds import WrittenJoint
 from pne_sym.model.manipulator import Space
 from pne_sym.model.platform_kinds import PlatformJointKind
@@ -42,6 +42,7 @@ def json_schema() -> Schema:
             "axis": _axis(),
             "rotation": _rotation(),
             "body": _body(),
+            **_effects(),
             "joint": _joint(),
             "jointOverride": _override(joints.FIELDS, _joint_fields()),
             "platformJoint": _platform_joint(),
@@ -123,7 +124,41 @@ def _joint_fields() -> dict[str, Schema]:
         "actuated": flags,
         "extra": flags,
         "link": _ref("body"),
+        **{name: _for_each(_ref(name)) for name in read_effects.FIELDS},
     }
+
+
+def _for_each(item: Schema) -> Schema:
+    """For all freedoms of a joint, or a list with an entry for each; false: none."""
+    none: Schema = {"const": False}
+    return {"anyOf": [item, none, _list_of({"anyOf": [item, none]}, 1, 3)]}
+
+
+def _effects() -> Schema:
+    """Friction, spring, motor and limits of a joint."""
+    number, some, least = _ref("number"), _positive(), _POSITIVE
+    scale: Schema = {"coulomb": ["velocity_scale"], "velocity_scale": ["coulomb"]}
+    friction = _table(
+        "friction",
+        read_effects.FRICTION,
+        {"viscous": least, "coulomb": least, "velocity_scale": some},
+        (),
+    )
+    gear: Schema = {**_NUMBER, "not": {"const": 0}}
+    actuator = {"rotor_inertia": least, "gear_ratio": gear}
+    limits = {"displacement": _list_of(number, 2), "rate": some, "effort": some}
+    return {
+        "friction": {**friction, "dependentRequired": scale, "minProperties": 1},
+        "spring": _table(
+            "spring", read_effects.SPRING, {"stiffness": least, "rest": number}, ("stiffness",)
+        ),
+        "actuator": _table("actuator", read_effects.ACTUATOR, actuator, read_effects.ACTUATOR),
+        "limits": {**_table("limits", read_effects.LIMITS, limits, ()), "minProperties": 1},
+    }
+
+
+def _positive() -> Schema:
+    return {"type": "number", "minimum": values.SNAP, "maximum": values.LARGEST}
 
 
 def _joint() -> Schema:
@@ -233,7 +268,9 @@ def _table(
 
 def _override(known: tuple[str, ...], fields: dict[str, Schema]) -> Schema:
     """Any of the fields of a table, none of them required."""
-    loose = {**fields, "link": {"type": "object"}} if "link" in known else fields
+    loose = {**fields, "link": {"type": "object"}} if "link" in known else dict(fields)
+    for name in set(known) & set(read_effects.FIELDS):
+        loose[name] = {"anyOf": [fields[name], {"type": "object"}]}
     return {
         "type": "object",
         "properties": {name: loose[name] for name in known},

@@ -36,6 +36,32 @@ MEANING: dict[str, dict[str, str]] = {
         "actuated": "Driven; of joints with several freedoms a list, one entry for each.",
         "extra": "The displacement is a coordinate of its own, appended to X.",
         "link": "Inertia of the link that the joint moves, link frame. Default: massless.",
+        "friction": "Viscous and Coulomb friction, of passive joints too. Of U and S one table is "
+        "meant for every freedom, a list has a table or false for each; C needs a list.",
+        "spring": "A spring between the links. U, C, S: as friction.",
+        "actuator": "The motor of an actuated joint. Of U, C, S one table is meant for every "
+        "driven freedom, a list has a table or false for each.",
+        "limits": "What the joint may do; it does not act on it. U, C, S: as friction.",
+    },
+    "friction": {
+        "viscous": "Friction per rate, N m s/rad, of slides N s/m.",
+        "coulomb": "Friction at high rates v, N m, of slides N: times v / sqrt(v^2 + "
+        "velocity_scale^2).",
+        "velocity_scale": "Rate below which Coulomb friction grows linearly, rad/s, of slides m/s.",
+    },
+    "spring": {
+        "stiffness": "N m/rad, of slides N/m.",
+        "rest": "Displacement without force, rad, of slides m. Default: 0.",
+    },
+    "actuator": {
+        "rotor_inertia": "Of all that turns with the motor, about its axis, kg m^2.",
+        "gear_ratio": "Motor angle per displacement, of slides rad/m; negative where it turns the "
+        "other way.",
+    },
+    "limits": {
+        "displacement": "Least and largest, rad, of slides m.",
+        "rate": "Largest size, rad/s, of slides m/s.",
+        "effort": "Largest size of the actuator's torque, N m, of slides force, N.",
     },
     "platform_joint": {
         "kind": "S spherical, R revolute, U universal, rigid; in the plane R or S.",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,14 +11,18 @@ import pytest
 
 from pne_sym.derivation import Rule
 from pne_sym.model.body import read_body
+from pne_sym.model.effects import Actuator, Friction
 from pne_sym.model.entry import Entry
 from pne_sym.model.errors import SpecError, SpecWarning
+from pne_sym.model.manipulator import Manipulator
+from pne_sym.model.read_effects import read_actuator, read_friction
 from pne_sym.model.values import axis, not_negative, number, rotation, vector
 from tests import models
 from tests.backends.c_library import INVALID, OK, Array, CLibrary
 from tests.sampling import sampled
 
 QUICK = ("-O0",)
+RUBBING = "planar_3rpr_rubbing"
 PLACES: dict[Rule, tuple[str, str]] = {
     Rule.FREE: ("stewart", "gravity"),
     Rule.MASS: ("stewart", "ups_link2_mass"),
@@ -26,8 +31,24 @@ PLACES: dict[Rule, tuple[str, str]] = {
     Rule.ROTATION: ("stewart", "ups_base_frame"),
     Rule.PLANAR_ROTATION: ("planar_3rrr", "rrr_base_frame"),
     Rule.UNIT: ("tripod_3upu", "upu_platform_joint_axis_platform"),
+    Rule.POSITIVE: (RUBBING, "rpr_joint1_velocity_scale"),
+    Rule.NONZERO: (RUBBING, "rpr_joint2_gear_ratio"),
 }
 """A parameter of every kind."""
+
+
+def manipulator_of(name: str) -> Manipulator:
+    """An entry of the catalogue; one of them has friction and motors besides."""
+    if name != RUBBING:
+        return models.catalogue(name)
+    found = models.catalogue("planar_3rpr")
+    legs = []
+    for leg in found.legs:
+        turn, slide = leg.joints
+        turn = replace(turn, friction=Friction(1.0, 2.0, 0.1))
+        slide = replace(slide, actuator=Actuator(1e-4, 40.0))
+        legs.append(replace(leg, joints=(turn, slide)))
+    return replace(found, name=RUBBING, legs=tuple(legs))
 
 
 def read(rule: Rule, value: Array) -> bool:
@@ -46,6 +67,10 @@ def read(rule: Rule, value: Array) -> bool:
                 rotation(entry, plane=planar)
             case Rule.UNIT:
                 axis(entry)
+            case Rule.POSITIVE:
+                read_friction(Entry("spec", "", {"coulomb": 1.0, "velocity_scale": entry.value}))
+            case Rule.NONZERO:
+                read_actuator(Entry("spec", "", {"rotor_inertia": 0.0, "gear_ratio": entry.value}))
     except SpecError:
         return False
     return True
@@ -114,6 +139,14 @@ CASES: dict[Rule, list[tuple[Any, bool]]] = {
         ((0.6, 0.0, 0.8), True), ((1.0, 0.0, 0.0), True), ((0.6, 0.0, 0.9), False),
         ((0.0, 0.0, 0.0), False), ((0.6001, 0.0, 0.8), False), ((1e11, 0.0, 0.0), False),
     ],
+    Rule.POSITIVE: [
+        (1.0, True), (0.0, False), (-1.0, False), (1.1e-9, True), (0.9e-9, False), (1e-30, False),
+        (0.999e12, True), (1.001e12, False),
+    ],
+    Rule.NONZERO: [
+        (1.0, True), (0.0, False), (-60.0, True), (1.1e-9, True), (-1.1e-9, True), (-0.9e-9, False),
+        (1e-30, False), (-0.999e12, True), (1.001e12, False),
+    ],
 }  # fmt: skip
 """Values of every kind, and whether they are good; far enough from the limits for floats."""
 NOT_NUMBERS = (np.nan, np.inf, -np.inf)
@@ -149,6 +182,9 @@ def near(rule: Rule, rng: np.random.Generator) -> Iterator[tuple[Array, bool]]:
         case Rule.FREE | Rule.MASS:
             limit = np.full(3 if rule is Rule.FREE else (), 1e12)
             yield limit * off, good
+        case Rule.POSITIVE | Rule.NONZERO:
+            sign = rng.choice([-1.0, 1.0]) if rule is Rule.NONZERO else 1.0
+            yield np.array(sign * 1e-9 * off), not good
 
 
 class Target:
@@ -156,7 +192,7 @@ class Target:
 
     def __init__(self, rule: Rule, folder: Any, real: str) -> None:
         self.rule, (name, self.parameter) = rule, PLACES[rule]
-        manipulator = models.catalogue(name)
+        manipulator = manipulator_of(name)
         self.module = models.module(manipulator)
         self.library = CLibrary(models.bundle(manipulator), folder, real, flags=QUICK)
         starts = np.cumsum([0, *(int(np.prod(f.shape, dtype=int)) for f in self.library.fields)])
@@ -211,10 +247,10 @@ def test_the_same_values_near_the_limits(rule: Rule, tmp_path: Any) -> None:
     assert bool(seen) == (rule is not Rule.PLANAR_INERTIA)  # zero is its limit
 
 
-@pytest.mark.parametrize("name", ["planar_3rrr", "stewart", "tripod_3upu", "hexapod_6uhs"])
+@pytest.mark.parametrize("name", ["planar_3rrr", "stewart", "tripod_3upu", "hexapod_6uhs", RUBBING])
 def test_every_parameter_has_its_rule(name: str) -> None:
     """By what it is, not by how it is called: from the specification's own fields."""
-    planar = name == "planar_3rrr"
+    planar = name.startswith("planar")
     wanted = {
         "mass": Rule.MASS,
         "inertia": Rule.PLANAR_INERTIA if planar else Rule.INERTIA,
@@ -222,8 +258,13 @@ def test_every_parameter_has_its_rule(name: str) -> None:
         "axis": Rule.UNIT,
         "axis_link": Rule.UNIT,
         "axis_platform": Rule.UNIT,
+        "viscous": Rule.MASS,
+        "coulomb": Rule.MASS,
+        "rotor_inertia": Rule.MASS,
+        "velocity_scale": Rule.POSITIVE,
+        "gear_ratio": Rule.NONZERO,
     }
-    for field in models.bundle(models.catalogue(name)).derivation.parameters.fields:
+    for field in models.bundle(manipulator_of(name)).derivation.parameters.fields:
         last = field.paths[0].rsplit(".", maxsplit=1)[-1]
         assert field.rule is wanted.get(last, Rule.FREE), field.name
 

@@ -18,6 +18,7 @@ from pne_sym.model.manipulator import JointKind, PlatformJointKind
 from tests.mechanics.evaluation import Array, Names
 from tests.oracle.closure import leg_closure, perpendicular_pair
 from tests.oracle.coordinates import is_planar, joint_slices, pose_size, task_size
+from tests.oracle.effects import friction, rotors, springs, stored
 from tests.oracle.jets import cross_matrix
 
 _SLIDE = JointKind.PRISMATIC
@@ -604,6 +605,36 @@ def _gamma(f: Facts, j: int) -> Any:
     return f.gamma(j)
 
 
+# ---- friction, springs, rotors -------------------------------------------------------------------
+
+
+@value_of(r"vs2_(\d+)")
+def _velocity_scale(f: Facts, j: int) -> Any:
+    friction = f.leg.joints[j - 1].friction
+    assert friction is not None
+    return (friction.velocity_scale or 0.0) ** 2
+
+
+@value_of(r"friction_(\d+)")
+def _friction(f: Facts, j: int) -> Any:
+    return friction(f.leg.joints, f.qd[1:])[j - 1]
+
+
+@value_of(r"spring_(\d+)")
+def _spring(f: Facts, j: int) -> Any:
+    return springs(f.leg.joints, f.q[1:])[j - 1]
+
+
+@value_of(r"stored_(\d+)")
+def _stored(f: Facts, j: int) -> Any:
+    return stored(f.leg.joints[j - 1 : j], f.q[j : j + 1])
+
+
+@value_of(r"rotor_(\d+)")
+def _rotor(f: Facts, j: int) -> Any:
+    return rotors(f.leg.joints)[j - 1]
+
+
 # ---- composite bodies ---------------------------------------------------------------------------
 
 
@@ -666,8 +697,10 @@ def _own_effort(f: Facts, j: int) -> Any:
 
 
 def _joint_inertia(f: Facts, j: int, k: int) -> Any:
-    """The oracle's inertia matrix, less what the platform accounts for."""
+    """The oracle's inertia matrix of the links, less what the platform accounts for."""
     full = float(f.result.joint_inertia[j - 1, k - 1])
+    if j == k:
+        full -= float(rotors(f.leg.joints)[j - 1])
     if not f.tip_body:
         return full
     h = f.first_moment(f.tip_body)
@@ -826,6 +859,7 @@ PLATFORM: dict[str, Callable[[PlatformFacts], Any]] = {
     "f_p": lambda p: p.force,
     "mu_p": lambda p: p.moment,
     "potential": lambda p: p.oracle.potential,
+    "dissipation": lambda p: p.oracle.dissipation,
     "b_c": lambda p: np.mean([f.arm for f in p.legs], axis=0),
     "spread": lambda p: np.sqrt(np.sum(np.var([f.arm for f in p.legs], axis=0))),
 }

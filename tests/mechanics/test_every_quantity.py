@@ -19,6 +19,7 @@ from pne_sym.derivation import Derivation, Equation, Trouble
 from pne_sym.mechanics.derive import derive
 from pne_sym.model.errors import SpecError
 from pne_sym.model.manipulator import Manipulator
+from pne_sym.model.reader import checked
 from pne_sym.vector import (
     LinearForm,
     Tensor,
@@ -38,6 +39,7 @@ from tests.mechanics.independent import (
 from tests.mechanics.structures import REFUSED, STRUCTURES, drawn
 from tests.models import random_spec, state_at
 from tests.oracle.projection import admissible
+from tests.random.effects import with_effects
 from tests.sampling import sampled
 from tests.whole.supported import SUPPORTED
 
@@ -54,6 +56,14 @@ CONSISTENT_ONLY = re.compile(
 """Names that have no independent value of their own: what is made of them has one."""
 OF_CHOICE = re.compile(r"(f|size|n|mu|gamma|phi|m\d+|mu\d+)_c\d+|Hk_a_\d+")
 """Those of the wrenches that a guide leaves out: they span a space, its basis is a choice."""
+DRESSED = [
+    ("extra revolute between", 3),
+    ("planar, extra slides", 4),
+    ("one slide, universal at the platform", 5),
+    ("translational, three slides", 6),
+    ("helix at the base", 8),
+]
+"""Structures that are examined with friction, springs and motors, and the seeds of these."""
 AT_REST = {"Z_p": "f_p", "Z_q": "mu_p"}
 """What another quantity comes to at zero acceleration."""
 
@@ -301,6 +311,14 @@ def test_every_quantity(name: str) -> None:
 def test_every_quantity_of_other_structures(name: str) -> None:
     account = Examination(drawn(name), 11).run()
     assert not account.faults, "\n".join(account.faults[:20])
+
+
+@pytest.mark.parametrize(("name", "seed"), sampled(DRESSED, 2))
+def test_every_quantity_with_friction_springs_and_motors(name: str, seed: int) -> None:
+    spec = with_effects(drawn(name), np.random.default_rng(seed), share=1.0)
+    account = Examination(checked(spec), seed).run()
+    assert not account.faults, "\n".join(account.faults[:20])
+    assert any(found.startswith(("friction", "spring", "rotor")) for found in account.independent)
 
 
 @pytest.mark.parametrize("name", REFUSED)

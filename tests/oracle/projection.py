@@ -38,6 +38,7 @@ from tests.oracle.coordinates import (
     task_size,
     twist_basis,
 )
+from tests.oracle.effects import friction, rotors, springs, stored
 from tests.oracle.forces import RANK_TOLERANCE, completion, forces
 from tests.oracle.jets import Array, Jet
 
@@ -89,7 +90,8 @@ class Result:
         tau_residual: (nv,) what tau and lam leave of M A + Z - W; zero for a consistent A.
         load: (nv,) the wrench as a generalised force.
         kinetic: J.
-        potential: J, zero at the base origin.
+        potential: J, zero at the base origin, with that of springs.
+        dissipation: W, power that friction takes.
         inertia_forces: (nv,) the sums P_k at A; equal to M A + Z for an admissible A.
         closure: largest closure residual of the given q (m, or sines of angles).
         legs: per leg.
@@ -109,6 +111,7 @@ class Result:
     load: Array
     kinetic: float
     potential: float
+    dissipation: float
     inertia_forces: Array
     closure: float
     legs: tuple[LegResult, ...]
@@ -147,6 +150,7 @@ class _Motion:
     remainders: list[Array]
     kinetic: float
     potential: float
+    dissipation: float
 
 
 def project(
@@ -191,7 +195,8 @@ def project(
     tau, lam = forces(H, Hk, demand, passive_extra_rows(manipulator))
     bodies = [leg.bodies.by(leg.rates) for leg in legs]
     return Result(
-        M=np.sum([inertia_matrix(group) for group in [*bodies, platform]], axis=0),
+        M=np.sum([inertia_matrix(group) for group in [*bodies, platform]], axis=0)
+        + np.sum([_rotor_inertia(leg) for leg in legs], axis=0),
         Z=still.forces,
         H=H,
         Hk=Hk,
@@ -206,6 +211,7 @@ def project(
         load=load,
         kinetic=moving.kinetic,
         potential=moving.potential,
+        dissipation=moving.dissipation,
         inertia_forces=moving.forces,
         closure=closure_error(manipulator, X, q),
         legs=_leg_results(manipulator, legs, moving, tau, lam),
@@ -366,16 +372,32 @@ def _evaluate(
     carried = motion_of([manipulator.platform], [pose])
     bodies = [leg.bodies.by(leg.rates) for leg in legs]
     pairs = list(zip([*bodies, platform], [*links, carried], strict=True))
+    triples = list(zip(legs, qd, qdd, strict=True))
     return _Motion(
         qd=np.concatenate(qd),
         qdd=np.concatenate(qdd),
         links=links,
         platform=only_body(carried),
-        forces=np.sum([virtual_forces(*pair, gravity) for pair in pairs], axis=0),
+        forces=np.sum([virtual_forces(*pair, gravity) for pair in pairs], axis=0)
+        + np.sum([leg.rates.T @ _in_joints(leg, *rates) for leg, *rates in triples], axis=0),
         remainders=remainders,
-        kinetic=sum(kinetic_energy(*pair) for pair in pairs),
-        potential=sum(potential_energy(*pair, gravity) for pair in pairs),
+        kinetic=sum(kinetic_energy(*pair) for pair in pairs)
+        + sum(0.5 * float(rotors(leg.leg.joints) @ rate**2) for leg, rate, _ in triples),
+        potential=sum(potential_energy(*pair, gravity) for pair in pairs)
+        + sum(stored(leg.leg.joints, leg.q) for leg in legs),
+        dissipation=sum(float(friction(leg.leg.joints, rate) @ rate) for leg, rate, _ in triples),
     )
+
+
+def _in_joints(leg: _LegKinematics, rate: Array, acceleration: Array) -> Array:
+    """(m,) forces along the joints that friction, springs and rotors take."""
+    joints = leg.leg.joints
+    return friction(joints, rate) + springs(joints, leg.q) + rotors(joints) * acceleration
+
+
+def _rotor_inertia(leg: _LegKinematics) -> Array:
+    """(nv, nv) inertia of the rotors in V."""
+    return np.asarray(leg.rates.T @ (rotors(leg.leg.joints)[:, None] * leg.rates))
 
 
 def _joint_acceleration(
@@ -408,6 +430,7 @@ def _leg_results(
         own = slice(first, first + leg.multipliers.shape[1])
         first = own.stop
         forces = virtual_forces(leg.bodies, motion, gravity)
+        forces += _in_joints(leg, moving.qd[where], moving.qdd[where])
         # Virtual power of joint j: reaction . v_j = tau_j - Gamma_j.
         power = (drives[where] - forces)[leg.free]
         reaction = np.linalg.pinv(leg.jacobian[:, leg.free].T) @ power
@@ -417,7 +440,7 @@ def _leg_results(
                 jacobian=leg.jacobian,
                 rates=leg.rates,
                 joint_forces=forces,
-                joint_inertia=inertia_matrix(leg.bodies),
+                joint_inertia=inertia_matrix(leg.bodies) + np.diag(rotors(leg.leg.joints)),
                 reaction=leg.wrench_map @ (reaction + leg.multipliers @ lam[own]),
                 constraint_wrenches=(leg.wrench_map @ leg.multipliers).T,
             )

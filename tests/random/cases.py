@@ -81,6 +81,9 @@ _EVERYWHERE = {
     "driven extra",
     "passive extra",
     "massless link",
+    "friction",
+    "spring",
+    "motor",
 }
 
 

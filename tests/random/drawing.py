@@ -41,6 +41,7 @@ from tests.oracle.jets import Array, constant
 from tests.oracle.projection import project
 from tests.oracle.randomisation import matrix3, random_inertia, vector3
 from tests.random.central import guided, with_ends_at_origins
+from tests.random.effects import with_effects
 
 LEG_QUALITY = 0.06
 """Least reciprocal condition number of a leg's freedoms."""
@@ -132,6 +133,11 @@ def draw(seed: int, *, light: bool = False, anywhere: bool = True) -> Manipulato
         anywhere: whether every second mechanism, and nearly all with extra coordinates, have
             drives anywhere, in any number; False: as many as freedoms, or one or two more or less.
     """
+    found = _structured(seed, light=light, anywhere=anywhere)
+    return with_effects(found, np.random.default_rng([seed, 4]))
+
+
+def _structured(seed: int, *, light: bool, anywhere: bool) -> Manipulator:
     if seed % GUIDED == 11:
         return guided(np.random.default_rng([seed, 3]))
     drawn = _drawn(seed, light=light)
@@ -608,4 +614,5 @@ def _code(joint: Joint) -> str:
             axis = letter
     offset = "".join(c for c, v in zip("xyz", joint.offset, strict=True) if v != 0.0)
     marks = "*" * joint.actuated + "+" * joint.extra + "0" * joint.link.is_massless
+    marks += "f" * bool(joint.friction) + "s" * bool(joint.spring) + "m" * bool(joint.actuator)
     return f"{joint.kind}{axis}{marks}{f'({offset})' if offset else ''}"

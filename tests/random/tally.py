@@ -107,6 +107,9 @@ def features(manipulator: Manipulator) -> frozenset[str]:
             *("driven extra" if joint.actuated else "passive extra" for joint in joints
               if joint.extra),
             *("massless link" for joint in joints if joint.link.is_massless),
+            *("friction" for joint in joints if joint.friction),
+            *("spring" for joint in joints if joint.spring),
+            *("motor" for joint in joints if joint.actuator),
             *_ranks(manipulator),
         }
     )  # fmt: skip

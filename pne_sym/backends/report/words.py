@@ -22,6 +22,10 @@ LAWS: dict[Law, str] = {
     Law.RULES: "The acceleration of the platform is collected by Rules I and II (Sec. 2.3, Eq. 4).",
     Law.ASSEMBLY: "Newton's and Euler's equations of the platform, with the forces of all legs "
     "(Sec. 2.4, Eq. 5).",
+    Law.FRICTION: "Viscous friction grows with the rate; Coulomb friction is of constant size, "
+    "smooth near rest. It takes power from every joint that has it.",
+    Law.SPRING: "Hooke: the force is proportional to the displacement from that at rest.",
+    Law.ROTOR: "A rotor geared to its joint: its inertia counts with the square of the ratio.",
     Law.ENERGY: "Work of the weight.",
     Law.LUMPING: "A value made of parameters alone, computed once when they are set.",
 }
@@ -126,6 +130,7 @@ FUNCTIONS = {
     "constraints": "distances and angles by which the legs miss the platform",
     "legs": "leg forces, for the leg reactions",
     "potential": "potential energy",
+    "dissipation": "power that friction takes",
     "condition": "H and the least pivots, for the conditioning",
 }
 SPACES = {

@@ -1,0 +1,139 @@
+"""Friction, springs, motors and limits of a joint, as a specification has them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TypeVar
+
+from pne_sym.model.effects import Actuator, Effects, Friction, Limits, Spring
+from pne_sym.model.entry import Entry, Table
+from pne_sym.model.values import SNAP, not_negative, number, numbers
+
+FIELDS = ("friction", "spring", "actuator", "limits")
+FRICTION = ("viscous", "coulomb", "velocity_scale")
+SPRING = ("stiffness", "rest")
+ACTUATOR = ("rotor_inertia", "gear_ratio")
+LIMITS = ("displacement", "rate", "effort")
+
+_Kind = TypeVar("_Kind")
+
+
+def read_effects(
+    table: Table, actuated: Sequence[bool], *, mixed: bool = False
+) -> tuple[Effects, ...]:
+    """What acts in each freedom of a joint.
+
+    Args:
+        table: of the joint.
+        actuated: for each of its freedoms, whether it is driven.
+        mixed: its freedoms differ in kind, so that one table cannot be meant for all of them.
+
+    Raises:
+        SpecError: a value without meaning, or a motor where nothing is driven.
+    """
+    count = len(actuated)
+    frictions = _each(table.get("friction"), count, read_friction, mixed=mixed)
+    springs = _each(table.get("spring"), count, _spring, mixed=mixed)
+    limits = _each(table.get("limits"), count, _limits, mixed=mixed)
+    motors = _each(table.get("actuator"), count, read_actuator, mixed=mixed and sum(actuated) > 1)
+    entry = table.get("actuator")
+    if entry:
+        motors = _driven(entry, motors, actuated)
+    return tuple(map(Effects, frictions, springs, motors, limits))
+
+
+def _each(
+    entry: Entry | None, count: int, read: Callable[[Entry], _Kind], *, mixed: bool
+) -> tuple[_Kind | None, ...]:
+    """What each freedom has: a table is meant for every one, a list has one entry for each."""
+    if entry is None or entry.value is False:
+        return (None,) * count
+    if isinstance(entry.value, list | tuple):
+        items = entry.items()
+        if len(items) != count:
+            raise entry.fault(
+                f"{count} entries, a table or false for each freedom", f"{len(items)} entries"
+            )
+        return tuple(None if item.value is False else read(item) for item in items)
+    if mixed:
+        raise entry.fault(
+            f"a list of {count}, a table or false for each freedom: one slides, the other turns"
+        )
+    return (read(entry),) * count
+
+
+def _driven(
+    entry: Entry, motors: tuple[Actuator | None, ...], actuated: Sequence[bool]
+) -> tuple[Actuator | None, ...]:
+    """Motors of the driven freedoms: one table is meant for these alone."""
+    listed = isinstance(entry.value, list | tuple)
+    idle = any(motor and not driven for motor, driven in zip(motors, actuated, strict=True))
+    if idle and (listed or not any(actuated)):
+        raise entry.fault("no motor where the joint is not actuated")
+    return tuple(motor if driven else None for motor, driven in zip(motors, actuated, strict=True))
+
+
+def read_friction(entry: Entry) -> Friction:
+    """Viscous friction, Coulomb friction, or both.
+
+    Raises:
+        SpecError: neither, a negative one, or Coulomb friction without a positive velocity scale.
+    """
+    table = entry.table(FRICTION)
+    if not {"viscous", "coulomb"} & table.fields.keys():
+        raise entry.fault("viscous, coulomb with velocity_scale, or all three")
+    viscous, coulomb = table.get("viscous"), table.get("coulomb")
+    scale = None
+    if coulomb:
+        meaning = "the rate below which it grows linearly"
+        scale = _positive(table.require("velocity_scale", meaning))
+    else:
+        table.refuse(("velocity_scale",), "it belongs to coulomb")
+    return Friction(
+        not_negative(viscous) if viscous else None,
+        not_negative(coulomb) if coulomb else None,
+        scale,
+    )
+
+
+def _spring(entry: Entry) -> Spring:
+    table = entry.table(SPRING)
+    stiffness = not_negative(table.require("stiffness", "a number (N m/rad or N/m)"))
+    rest = table.get("rest")
+    return Spring(stiffness, number(rest) if rest else 0.0)
+
+
+def read_actuator(entry: Entry) -> Actuator:
+    """A motor.
+
+    Raises:
+        SpecError: a negative inertia, or a ratio next to zero.
+    """
+    table = entry.table(ACTUATOR)
+    inertia = not_negative(table.require("rotor_inertia", "a number (kg m^2)"))
+    gear = table.require("gear_ratio", "motor angle per displacement (a slide: rad/m)")
+    ratio = number(gear)
+    if abs(ratio) < SNAP:
+        raise gear.fault(f"a number other than zero, at least {SNAP:g} in size")
+    return Actuator(inertia, ratio)
+
+
+def _limits(entry: Entry) -> Limits:
+    table = entry.table(LIMITS)
+    if not table.fields:
+        raise entry.fault("displacement = [least, largest], rate, effort, or some of them")
+    rate, effort, range_ = table.get("rate"), table.get("effort"), table.get("displacement")
+    between = None
+    if range_:
+        least, largest = numbers(range_, 2, "a list of two numbers: least, largest")
+        if not least < largest:
+            raise range_.fault("a least displacement below the largest")
+        between = (least, largest)
+    return Limits(between, _positive(rate) if rate else None, _positive(effort) if effort else None)
+
+
+def _positive(entry: Entry) -> float:
+    value = number(entry)
+    if value < SNAP:
+        raise entry.fault(f"a positive number, at least {SNAP:g}")
+    return value

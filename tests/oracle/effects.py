@@ -1,0 +1,54 @@
+"""Friction, springs and rotors as forces along all joints, from a specification's numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from pne_sym.model.manipulator import Joint, JointKind
+from tests.oracle.jets import Array
+
+
+def friction(joints: Iterable[Joint], qd: Array) -> Array:
+    """(m,) forces against the rates."""
+    forces = np.zeros(len(qd))
+    for k, (joint, rate) in enumerate(zip(joints, qd, strict=True)):
+        of = joint.friction
+        if of is None:
+            continue
+        forces[k] = (of.viscous or 0.0) * rate
+        if of.coulomb is not None and of.velocity_scale is not None:
+            forces[k] += of.coulomb * rate / np.hypot(rate, of.velocity_scale)
+    return forces
+
+
+def springs(joints: Iterable[Joint], q: Array) -> Array:
+    """(m,) forces against the displacements."""
+    stiffness, strain = _springs(joints, q)
+    return stiffness * strain
+
+
+def stored(joints: Iterable[Joint], q: Array) -> float:
+    """Energy of the springs, J: the integral of their forces from rest."""
+    stiffness, strain = _springs(joints, q)
+    return float(0.5 * stiffness @ strain**2)
+
+
+def _springs(joints: Iterable[Joint], q: Array) -> tuple[Array, Array]:
+    """Stiffness, and displacement from rest; angles that are no coordinates within (-pi, pi]."""
+    stiffness, strain = np.zeros(len(q)), np.zeros(len(q))
+    for k, (joint, given) in enumerate(zip(joints, q, strict=True)):
+        if joint.spring is None:
+            continue
+        wraps = joint.kind is JointKind.REVOLUTE and not joint.extra
+        value = np.pi - np.remainder(np.pi - given, 2.0 * np.pi) if wraps else given
+        stiffness[k], strain[k] = joint.spring.stiffness, value - joint.spring.rest
+    return stiffness, strain
+
+
+def rotors(joints: Iterable[Joint]) -> Array:
+    """(m,) inertia along each joint: a rotor turns at gear_ratio times the rate."""
+    found = [j.actuator.rotor_inertia * j.actuator.gear_ratio**2 if j.actuator else 0.0
+             for j in joints]  # fmt: skip
+    return np.array(found)

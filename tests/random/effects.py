@@ -1,0 +1,57 @@
+"""Friction, springs and motors of drawn mechanisms: which by leg type, values by leg."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from pne_sym.model.effects import Actuator, Friction, Spring
+from pne_sym.model.manipulator import Joint, Leg, Manipulator
+
+SHARE = 0.5
+"""Of so many mechanisms some joints have some of these."""
+LIKELY = 0.4
+"""Of so many joints of such a mechanism each of these."""
+
+
+def with_effects(
+    manipulator: Manipulator, rng: np.random.Generator, share: float = SHARE, likely: float = LIKELY
+) -> Manipulator:
+    """The mechanism, now and then with friction, springs and motors in some joints."""
+    if rng.random() > share:
+        return manipulator
+    plans: dict[object, list[str]] = {}
+    legs = []
+    for leg in manipulator.legs:
+        plan = plans.setdefault(_structure(leg), [_kinds(rng, likely) for _ in leg.joints])
+        joints = [_dressed(j, kinds, rng) for j, kinds in zip(leg.joints, plan, strict=True)]
+        legs.append(replace(leg, joints=tuple(joints)))
+    return replace(manipulator, legs=tuple(legs))
+
+
+def _structure(leg: Leg) -> object:
+    return tuple((j.kind, j.actuated, j.extra, j.link.is_massless, j.axis) for j in leg.joints)
+
+
+def _kinds(rng: np.random.Generator, likely: float) -> str:
+    """Letters: v viscous, c Coulomb, s spring, m motor."""
+    return "".join(letter for letter in "vcsm" if rng.random() < likely)
+
+
+def _dressed(joint: Joint, kinds: str, rng: np.random.Generator) -> Joint:
+    viscous, coulomb, scale, stiffness, inertia = rng.uniform(0.5, 2.0, 5)
+    rest, ratio = rng.uniform(-1.0, 1.0), rng.uniform(20.0, 60.0) * rng.choice([-1.0, 1.0])
+    friction = Friction(
+        float(viscous) if "v" in kinds else None,
+        float(4.0 * coulomb) if "c" in kinds else None,
+        float(0.1 * scale) if "c" in kinds else None,
+    )
+    return replace(
+        joint,
+        friction=friction if {"v", "c"} & set(kinds) else None,
+        spring=Spring(float(10.0 * stiffness), float(rest)) if "s" in kinds else None,
+        actuator=Actuator(float(1e-4 * inertia), float(ratio))
+        if "m" in kinds and joint.actuated
+        else None,
+    )
