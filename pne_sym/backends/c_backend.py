@@ -113,7 +113,7 @@ def _view(bundle: Bundle) -> CView:
         *("\n".join(user.definitions()) for user in users),
     ]
     checks = tuple(parameter_checks(bundle))
-    support = _support(bundle)
+    operators = needed(support(bundle, biggest(bundle)), texts)
     home = bundle.coordinates.home
     return CView(
         coordinates=_coordinate_lines(describe(bundle)),
@@ -124,21 +124,21 @@ def _view(bundle: Bundle) -> CView:
         home_x=", ".join(f"R({v})" for v in home[0]),
         home_q=", ".join(f"R({v})" for v in home[1]),
         checks=checks,
-        checked=needed(render("c/checks.c.jinja"), (*checks, needed(support, texts))),
+        checked=needed(render("c/checks.c.jinja"), (*checks, operators)),
         prepare=tuple(prepare_body(bundle)),
         closures=closures,
-        support=needed(support, texts),
+        support=operators,
         texts=tuple(texts),
     )
 
 
-def _support(bundle: Bundle) -> str:
-    """All that a module may need of written-out C."""
+def support(bundle: Bundle, big: int) -> str:
+    """All that a module may need of written-out C, for matrices of so many rows and columns."""
     c = bundle.coordinates
     return "\n".join(
         render(
             f"c/{name}.c.jinja",
-            big=biggest(bundle),
+            big=big,
             tiny=operations.TINY,
             quaternion=sum(n in "xyz" for n in c.pose) if c.has_quaternion else None,
             sizes=c.sizes,

@@ -70,14 +70,15 @@ OPERATIONS = frozenset((*_ENTRIES, *_LANES, *_SINGLE, *_PARTS, "search"))
 _FILL = {Default.ZEROS: "0", Default.ONES: "1"}
 
 
+def lanes_of(operation: str) -> bool:
+    """Whether states side by side have the operation."""
+    return operation in _LANES or (operation not in _SINGLE and operation != "search")
+
+
 def runs_in_lanes(function: PublicFunction) -> bool:
-    """Whether a batch runs several states side by side: what it does once can be."""
+    """Whether a batch runs several states side by side: one run of the legs, and what can be."""
     runs = [step for step in function.steps if isinstance(step, Run)]
-    return (
-        function.is_exported
-        and len(runs) == 1
-        and not function.operations - _LANES.keys() - _ENTRIES.keys() - set(_PARTS)
-    )
+    return function.is_exported and len(runs) == 1 and all(map(lanes_of, function.operations))
 
 
 def biggest(bundle: Bundle) -> int:
@@ -98,6 +99,7 @@ class Steps:
         function: what is printed.
         runs: routines that run the functions of the program, by name.
         parts: routines of the functions that it searches with, by name.
+        lanes: for states side by side; by default where these are used.
     """
 
     def __init__(
@@ -106,9 +108,11 @@ class Steps:
         function: PublicFunction,
         runs: Mapping[str, Routine],
         parts: Mapping[str, Routine],
+        *,
+        lanes: bool | None = None,
     ) -> None:
         self.bundle, self.f, self.runs, self.parts = bundle, function, runs, parts
-        self.lanes = runs_in_lanes(function)
+        self.lanes = runs_in_lanes(function) if lanes is None else lanes
         self.w = "w" if self.lanes else "1"
         self.read = interpret.inputs_read(bundle.program, function)
         self.at = {a.name: a.name for a in function.inputs}
@@ -122,10 +126,11 @@ class Steps:
         lines = [f"start({self.w}, &why);", *self._inputs()]
         for step in self.f.steps:
             lines += self._step(step)
-        for o in self.f.outputs:
+        outputs = [o for o in self.f.outputs if o.value.size]
+        for o in outputs:
             lines.append(f"check({o.value.size}, {self.w}, {self.at[o.name]}, why.overflow);")
         lines.append(f"judge(&why, {self.w}, code);")
-        for o in self.f.outputs:
+        for o in outputs:
             at = f"{self.at[o.name]}, {o.value.size}, {self.w}, code"
             lines.append(f"deliver({at}, {o.label}_out);")
         if self.work:
@@ -207,7 +212,7 @@ class Steps:
             places = [0, first]
         elif step.operation in ("same", "entry") or (step.operation == "extend" and whole):
             places = [first if step.operation == "entry" else 0]
-        elif step.operation == "take" and numbers == tuple(range(first, first + len(numbers))):
+        elif step.operation == "take" and numbers == (*range(first, first + len(numbers)),) != ():
             places = [first]
         else:
             return []

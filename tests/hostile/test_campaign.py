@@ -75,10 +75,7 @@ DELIVER = """for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < w; ++k) {
             out[size*k + e] = x[e*w + k];
 """
-VERDICT = """    verdict values, *const t = &values;
-    int code;
-    start(1, t);
-"""
+VERDICT = "    verdict why;\n"
 PLANTED = {
     "NaN is left out": ("fast", "out[e] = R(NAN);", "out[e] = 0;", "impossible, but not NaN"),
     "infinite counts as finite": ("fast", "return x - x == 0;", "return x == x;", "not finite"),
@@ -90,7 +87,7 @@ PLANTED = {
     ),
     "failures are not counted": (
         "fast",
-        "failed += code[k] != FIVEBAR_REVOLUTE_OK;",
+        "failed += code[k] != OK;",
         "failed += code[k] > 1;",
         "count of failures",
     ),
@@ -103,7 +100,7 @@ PLANTED = {
     "a state is kept": (
         "thread",
         VERDICT,
-        VERDICT.replace("verdict values, *const t", "static verdict values; verdict *const t"),
+        VERDICT.replace("verdict", "static verdict"),
         "data race",
     ),
 }

@@ -84,9 +84,11 @@ def test_an_output_function(copy: Path) -> None:
     assert len(blocks) == 3
     write(copy, blocks)
     (check,) = (b.text for b in blocks if b.said == "run")
-    targets = "numpy,xp,octave"
+    targets = "numpy,c,xp,octave"
     run(copy, *PNE_GEN, "planar_3rpr", "--target", targets, "--out", "generated_here")
     assert (copy / "generated_here/planar_3rpr/octave/+planar_3rpr/applied_force.m").is_file()
+    header = (copy / "generated_here/planar_3rpr/planar_3rpr.h").read_text()
+    assert "planar_3rpr_applied_force_batch(" in header
     assert (
         "def applied_force(" in (copy / "generated_here/planar_3rpr/planar_3rpr_xp.py").read_text()
     )

@@ -33,7 +33,7 @@ OPTIONS = (*"-machdep gcc_x86_64 -eva -eva-no-results -eva-slevel 3".split(),)
 # Loops of so many rounds are followed round by round; not those of iterations: there are too many.
 UNROLL, UNROLL_ITERATED = "49", "39"
 # Iterations are not told apart by the ways through them: there are too many.
-MERGED = ("{name}_forward_kinematics", "{name}_project", "singular_values")
+MERGED = ("search_mismatch", "search_constraint_gap", "singular_values")
 SAFETY = ("-warn-special-float", "none")
 NUMBERS = ("-warn-special-float", "non-finite")
 
@@ -223,8 +223,7 @@ def analyse(folder: Path, analysis: str, part: Part, limit: float) -> tuple[list
 def _merged(source: Path) -> list[str]:
     """The option for those functions of MERGED that a source has."""
     text = source.read_text(encoding="utf-8")
-    names = [function.format(name=source.stem) for function in MERGED]
-    found = ",".join(f"{name}:0" for name in names if f" {name}(" in text)
+    found = ",".join(f"{name}:0" for name in MERGED if f" {name}(" in text)
     return ["-eva-slevel-function", found] if found else []
 
 
