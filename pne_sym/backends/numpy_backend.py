@@ -76,7 +76,7 @@ class NumpyBackend:
             _shapes(functions, bundle),
             places.lines(),
             tuple(c.joints.index(a) for a in c.actuators),
-            sum(name in "xyz" for name in c.pose) if c.has_quaternion else None,
+            c.position if c.has_quaternion else None,
             program.given,
             tuple(_closure(bundle, closure) for closure in program.closures),
             _branches(bundle),
