@@ -84,7 +84,9 @@ class Code(PythonText):
         for vector in function.inputs:
             size = self.bundle.coordinates.sizes[_SIZES[vector]]
             entries = [(k, f"{vector}_{k}") for k in range(size)]
-            lines += [f"{name} = {vector}[{k}, ...]" for k, name in entries if name in parts.entries]
+            lines += [
+                f"{name} = {vector}[{k}, ...]" for k, name in entries if name in parts.entries
+            ]
         return lines
 
     def _array(self, function: Function, name: str) -> list[str]:
