@@ -136,7 +136,7 @@ class _Model:
     def _unsolved(self, actuators: int) -> dict[str, Flags]:
         """Functions that solve linear equations -> states at which these have no solution."""
         c, program = self.bundle.coordinates, self.bundle.program
-        layout = PoseLayout(sum(name in "xyz" for name in c.pose), c.has_quaternion)
+        layout = PoseLayout(c.position, c.has_quaternion)
         home_q = np.array(c.home[1])
         model = Interpreter(program, program.public, self.prepared, home_q, layout)
         given = {**self.vectors, "tau": np.ones((len(self.vectors["X"]), actuators))}

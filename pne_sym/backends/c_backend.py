@@ -94,7 +94,7 @@ def _view(bundle: Bundle) -> CView:
         CClosure(
             closure,
             bundle.program.shapes[f"gap_{(leg := closure.leg_type)}"][1],
-            runs[f"closure_{leg}"].call_with(
+            runs[closure.function].call_with(
                 {"w": "1", "joints": "q", f"gap_{leg}": "gap", f"jacobian_{leg}": "jacobian"}
             ),
         )
@@ -102,11 +102,12 @@ def _view(bundle: Bundle) -> CView:
     )
     steps, routines = _steps(bundle, runs)
     users = [Caller(bundle.name, f, routines[f.of.name]) for f in c_functions(bundle)]
+    closing = {closure.function for closure in bundle.program.closures}
     texts = [
-        *(t for n, t in functions.items() if n.startswith("closure_")),
+        *(t for n, t in functions.items() if n in closing),
         *([_closing(bundle, closures)] if closures else []),
         "/* ---- functions of the state: M, Z, H and the like ---- */",
-        *(t for n, t in functions.items() if not n.startswith("closure_")),
+        *(t for n, t in functions.items() if n not in closing),
         "/* ---- what users call, as steps over these ---- */",
         *steps,
         "/* ---- one state, and batches ---- */",

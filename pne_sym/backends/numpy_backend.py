@@ -76,7 +76,7 @@ class NumpyBackend:
             _shapes(functions, bundle),
             places.lines(),
             tuple(c.joints.index(a) for a in c.actuators),
-            sum(name in "xyz" for name in c.pose) if c.has_quaternion else None,
+            c.position if c.has_quaternion else None,
             program.given,
             tuple(_closure(bundle, closure) for closure in program.closures),
             _branches(bundle),
@@ -112,7 +112,7 @@ def _functions(bundle: Bundle, places: Places) -> tuple[FunctionText, ...]:
     program = bundle.program
     judged = {n for f in program.public if f.gives_status for n in f.functions}
     run = {n for f in program.public for n in f.functions}
-    run |= {f"closure_{closure.leg_type}" for closure in program.closures}
+    run |= {closure.function for closure in program.closures}
     return tuple(
         FunctionText(bundle, f, places, judged=f.name in judged)
         for f in program.functions.values()
@@ -136,11 +136,11 @@ def _exported(bundle: Bundle) -> tuple[str, ...]:
 
 def _closure(bundle: Bundle, closure: Closure) -> str:
     """A row of the table of closures."""
-    name, function = closure.leg_type, bundle.program.functions[f"closure_{closure.leg_type}"]
+    function = bundle.program.functions[closure.function]
     joints = f"np.array({[list(leg) for leg in closure.joints]})"
     signs = f'_BRANCHES["{closure.sign_name}"]' if closure.rows else "()"
     facts = f"{function.inputs}, {function.arrays}, {joints}, {list(closure.turning)}"
-    return f"(_run_closure_{name}, {facts}, {list(closure.rows)}, {signs})"
+    return f"(_run_{closure.function}, {facts}, {list(closure.rows)}, {signs})"
 
 
 def _default_lines(f: FieldView) -> list[str]:

@@ -55,7 +55,8 @@ class FunctionText:
 
     def __init__(self, bundle: Bundle, function: Function, places: Places, *, judged: bool) -> None:
         self.bundle, self.f, self.places, self.judged = bundle, function, places, judged
-        self.reads = slices(function).reads
+        parts = slices(function)
+        self.reads, self.entries = parts.reads, parts.entries
         self.outside, self.inside = PythonText(bundle), PythonText(bundle, indent=8)
 
     def text(self) -> str:
@@ -106,7 +107,7 @@ class FunctionText:
             lines += [
                 f"{vector}_{k} = {vector}[{k}]"
                 for k in range(size)
-                if f"{vector}_{k}" in self.reads
+                if f"{vector}_{k}" in self.entries
             ]
         return lines
 

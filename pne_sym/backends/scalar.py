@@ -104,17 +104,11 @@ class ScalarPrinter(StrPrinter):
         if not exponent.is_Integer:
             raise TypeError(f"no power {exponent} in generated code")
         factor = self.parenthesize(base, PRECEDENCE["Mul"])
-        return (
-            f"({'*'.join([factor] * int(exponent))})"
-            if not base.is_Symbol
-            else "*".join([factor] * int(exponent))
-        )
+        return "*".join([factor] * int(exponent))
 
     def parenthesize(self, item: Any, level: int, strict: bool = False) -> str:
-        """Parentheses where the precedence needs them; products stand for powers."""
-        product = item.is_Pow and item.exp.is_Integer and item.exp > 1
-        own = PRECEDENCE["Mul"] if product else precedence(item)
-        text = self._print(item)
+        """Parentheses where the precedence needs them; behind / for powers too, which are products."""
+        own, text = precedence(item), self._print(item)
         return (
             f"({text})"
             if own < level

@@ -283,6 +283,7 @@ class LegTypeInfo:
         orientation: rows of the Jacobian of an iterated closure whose determinant has home's
             sign on home's branch; none where the branch cannot be told so.
         orientation_sign: name of that sign among the branches.
+        number: of the types of its architecture, from 1.
     """
 
     name: str
@@ -294,6 +295,7 @@ class LegTypeInfo:
     transmitted: int = 0
     orientation: tuple[int, ...] = ()
     orientation_sign: str = ""
+    number: int = 1
 
     @property
     def is_closed(self) -> bool:
@@ -345,9 +347,14 @@ class Coordinates:
     constraint_units: tuple[str, ...] = ()
 
     @property
+    def position(self) -> int:
+        """Number of the pose's entries that are its position; they come first."""
+        return sum(k < 3 for k in self.components)
+
+    @property
     def has_quaternion(self) -> bool:
         """Whether the orientation is given by a quaternion."""
-        return "qw" in self.pose
+        return len(self.pose) == self.position + 4
 
     @property
     def sizes(self) -> dict[str, int]:

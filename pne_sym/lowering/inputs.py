@@ -55,16 +55,15 @@ def _pose(derivation: Derivation) -> tuple[list[Assignment], list[Check]]:
     assignments: list[Assignment] = []
     checks: list[Check] = []
     position = _components(derivation, Role.POSITION)
-    for k, name in enumerate(coordinates.pose):
-        if name in _AXES:
-            assignments.append(Assignment(position[_AXES.index(name)], entry("X", k), "X"))
+    for k, component in enumerate(coordinates.components[: coordinates.position]):
+        assignments.append(Assignment(position[component], entry("X", k), "X"))
     rotation = next((f.rotation for f in derivation.frames if f.name == PLATFORM), None) or ()
-    if coordinates.planar and "phi" in coordinates.pose:
-        phi = entry("X", coordinates.pose.index("phi"))
+    if coordinates.planar and len(coordinates.pose) > coordinates.position:
+        phi = entry("X", coordinates.position)
         assignments.append(Assignment(rotation[0], sp.cos(phi), "X"))
         assignments.append(Assignment(rotation[3], sp.sin(phi), "X"))
     if coordinates.has_quaternion:
-        named, checks = _quaternion(coordinates.pose.index("qx"), rotation)
+        named, checks = _quaternion(coordinates.position, rotation)
         assignments.extend(named)
     return assignments, checks
 

@@ -69,7 +69,8 @@ def public_functions(derivation: Derivation, program: Program) -> tuple[PublicFu
         *writer.of_kinematics(),
         *pose_functions(coordinates),
     )
-    found = tuple(map(with_readable_names, found))
+    arrays = {f.name: f.arrays for f in program.functions.values()}
+    found = tuple(with_readable_names(f, arrays) for f in found)
     for function in found:
         verify_steps(function)
     return tuple(with_notes(function, coordinates, guessed=guessed) for function in found)

@@ -20,9 +20,8 @@ class _Layout:
 
     @staticmethod
     def of(c: Coordinates) -> _Layout:
-        position = sum(name in "xyz" for name in c.pose)
         turning = sum(k >= 3 for k in c.components)
-        return _Layout(position, len(c.pose) - position, turning, len(c.extras))
+        return _Layout(c.position, len(c.pose) - c.position, turning, len(c.extras))
 
     @property
     def sides(self) -> int:

@@ -230,6 +230,7 @@ def _info(leg_type: LegType, inverse: InverseKinematics, transmitted: int) -> Le
         tuple(inverse.methods[j] for j in range(1, count + 1)),
         tuple(sorted(inverse.reasons.items())),
         transmitted,
+        number=leg_type.number,
     )
 
 

@@ -29,12 +29,14 @@ class LegType:
         architecture: such as "UPS", driven joints underlined as _P.
         indices: positions of the legs in the manipulator.
         legs: the legs themselves.
+        number: of the types of its architecture, from 1.
     """
 
     name: str
     architecture: str
     indices: tuple[int, ...]
     legs: tuple[Leg, ...]
+    number: int = 1
 
     @property
     def model(self) -> Leg:
@@ -70,7 +72,7 @@ def leg_types(manipulator: Manipulator) -> tuple[LegType, ...]:
         stem = architecture.replace("_", "").replace("*", "").lower()
         used[stem] = used.get(stem, 0) + 1
         name = stem if used[stem] == 1 else f"{stem}{used[stem]}"
-        types.append(LegType(name, architecture, tuple(indices), legs))
+        types.append(LegType(name, architecture, tuple(indices), legs, used[stem]))
     return tuple(types)
 
 

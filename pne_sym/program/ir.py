@@ -222,6 +222,11 @@ class Closure:
     sign_name: str = ""
 
     @property
+    def function(self) -> str:
+        """Name of the function of the program that gives gap and Jacobian."""
+        return f"closure_{self.leg_type}"
+
+    @property
     def unknowns(self) -> int:
         """Displacements of a leg that are looked for."""
         return len(self.joints[0])

@@ -68,7 +68,7 @@ def gap_and_jacobian(
 ) -> tuple[Array, Array]:
     """Gaps (states, legs, conditions) and Jacobians (states, legs, conditions, unknowns)."""
     name = closure.leg_type
-    found = evaluate(program, f"closure_{name}", prepared, {"X": X, "q": q}).outputs
+    found = evaluate(program, closure.function, prepared, {"X": X, "q": q}).outputs
     jacobian = found[f"jacobian_{name}"].reshape(*found[f"gap_{name}"].shape, closure.unknowns)
     return found[f"gap_{name}"], jacobian
 

@@ -8,7 +8,7 @@ equations ...) to arrays of one state.  Every operation has one definition, in
 from __future__ import annotations
 
 import enum
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from keyword import iskeyword
 
@@ -175,15 +175,22 @@ class PublicFunction:
         return frozenset(applied | {"search" for s in self.steps if isinstance(s, Search)})
 
 
-def with_readable_names(function: PublicFunction) -> PublicFunction:
-    """The same steps, with arrays called as users and the program call them where that is free."""
+def with_readable_names(
+    function: PublicFunction, arrays: Mapping[str, tuple[str, ...]]
+) -> PublicFunction:
+    """The same steps, with arrays called as users and the program call them where that is free.
+
+    Args:
+        function: with names of its own.
+        arrays: of every function of the program, by name.
+    """
     taken = {argument.name for argument in function.inputs}
     names = {name: name for name in taken}
     wanted = [(output.name, output.label) for output in function.outputs]
     for step in function.steps:
         if isinstance(step, Run):
-            ending = f"_of_{step.function}"
-            wanted += [(t.name, t.name.removesuffix(ending)) for t in step.targets]
+            names_of = arrays[step.function]
+            wanted += [(t.name, a) for t, a in zip(step.targets, names_of, strict=True)]
     for name, wish in wanted:
         label = f"{wish}_" if iskeyword(wish) else wish
         if name not in names and label not in taken:

@@ -42,6 +42,11 @@ class Slices:
         return own | {str(a.target) for a in self.function.unpack} | set(self.sums)
 
     @property
+    def entries(self) -> set[str]:
+        """Entries of input vectors that are read: where the inputs are named, and there alone."""
+        return read_by(self.function.unpack)
+
+    @property
     def reads_before(self) -> set[str]:
         """Names that are read where the inputs are named, and before the legs."""
         return symbols(self.before) | read_by(self.function.unpack)

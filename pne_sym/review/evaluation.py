@@ -46,12 +46,9 @@ class Structure:
         table = self.derivation.parameters
         found = {n: f.leg_type for n, (f, _) in table.entries.items() if f.leg_type}
         found |= {n: leg_type for n, (leg_type, _) in table.branches.items()}
-        for name, given in self.givens.items():
-            used = {n for c in given.components for n in names_in(c)}
-            prefix = given.frame.partition(".")[0]
-            types = {prefix} & self.legs.keys() | {found[n] for n in used if n in found}
-            if types:
-                found[name] = min(types)
+        for name in self.givens:
+            if owner := self.derivation.notation[name].leg_type:
+                found[name] = owner
         for chapter in self.derivation.chapters:
             for equation in chapter.equations:
                 used = names_outside_sums(equation.rhs)

@@ -51,7 +51,8 @@ def test_every_row_fits_the_sources(fault: Fault) -> None:
         environment().parse(text)
         return
     ast.parse(text)
-    imported(fault.file, text)
+    if "_kinds/" not in fault.file:  # whose files enter themselves into a table
+        imported(fault.file, text)
 
 
 def imported(file: str, text: str) -> None:

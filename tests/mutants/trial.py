@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 
-from tests.mutants.faults import ROOT, Fault
+from tests.mutants.faults import ROOT, Fault, FaultError
 
 COPIED = ("pne_sym", "templates", "tests", "docs", "README.md", "pyproject.toml", "LICENSE")
 _LEFT_OUT = shutil.ignore_patterns("gallery", "node_modules", "__pycache__")
@@ -145,7 +145,11 @@ def try_fault(fault: Fault, seconds: float, *, wider: bool = True) -> Outcome:
     with tempfile.TemporaryDirectory(prefix="mutant-", ignore_cleanup_errors=True) as folder:
         top = copy_sources(Path(folder))
         path = top / fault.file
-        path.write_text(fault.mutated(path.read_text(encoding="utf-8")), encoding="utf-8")
+        try:
+            text = fault.mutated(path.read_text(encoding="utf-8"))
+        except (FaultError, OSError) as error:
+            return Outcome(fault, Verdict.WRONG, str(error))
+        path.write_text(text, encoding="utf-8")
         found = _judged(fault, run_tests(top, fault.tests, seconds), Verdict.KILLED)
         if found.verdict is Verdict.SURVIVED and wider and fault.wider:
             found = _judged(fault, run_tests(top, fault.wider, seconds), Verdict.KILLED_LATE)

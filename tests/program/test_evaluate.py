@@ -181,6 +181,9 @@ def test_legs_are_measured_by_their_length(gap: float) -> None:
     X[0, 0] += gap
     found = evaluate(models.bundle(manipulator).program, "M", values, {"X": X})
     assert found.status.tolist() == [Status.SINGULAR if gap < 1e-9 else Status.OK]
+    m = models.module(manipulator)
+    for M in (m.M(X[0]), m.M(np.tile(X, (20, 1)))):  # in floats, in arrays
+        assert np.isfinite(M).all() == (gap > 1e-9)
 
 
 def test_expressions() -> None:

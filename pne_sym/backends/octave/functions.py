@@ -112,14 +112,15 @@ class Code(MatlabText):
 
     def _inputs(self, function: Function) -> list[str]:
         """Names for prepared values, and for the entries of the input vectors that are read."""
-        read = set[str]().union(*map(symbols, function.blocks)) | slices(function).reads_before
+        parts = slices(function)
+        read = set[str]().union(*map(symbols, function.blocks)) | parts.reads_before
         shared = [n for n in function.shared if n in read]
         shared += [n for names in function.per_leg.values() for n in names if n in read]
         lines = [f"{named(name)} = model.{named(name)};" for name in shared]
         for vector in function.inputs:
             size = self.bundle.coordinates.sizes[_SIZES[vector]]
             entries = [(k + 1, f"{vector}_{k}") for k in range(size)]
-            lines += [f"{name} = {vector}({k}, :);" for k, name in entries if name in read]
+            lines += [f"{name} = {vector}({k}, :);" for k, name in entries if name in parts.entries]
         return lines
 
     def _given(self) -> list[str]:

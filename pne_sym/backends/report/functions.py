@@ -202,14 +202,14 @@ def _links(ids: list[str]) -> str:
 def counts(bundle: Bundle) -> Table:
     """Operations of every function."""
     rows = [
-        _row(f"`{f.name}`", _gives(f.name), count_function(f, bundle.leg_counts))
+        _row(f"`{f.name}`", _gives(bundle, f.name), count_function(f, bundle.leg_counts))
         for f in bundle.program.functions.values()
     ]
     return table(("Function", "Gives", *_COUNT_HEAD), rows, numbers=len(_COUNT_HEAD))
 
 
-def _gives(name: str) -> str:
-    if name.startswith("closure_"):
+def _gives(bundle: Bundle, name: str) -> str:
+    if any(name == closure.function for closure in bundle.program.closures):
         return "a step of the iteration that precedes the functions of X: gap and its derivative"
     return FUNCTIONS[name]
 

@@ -27,9 +27,7 @@ def _marked(info: LegTypeInfo, before: str, after: str) -> str:
 
 def _number(info: LegTypeInfo) -> str:
     """Number of a leg type whose architecture another type has, too."""
-    stem = info.title.replace("_", "").replace("*", "").lower()
-    number = info.name.removeprefix(stem)
-    return f" {number}" if number else ""
+    return f" {info.number}" if info.number > 1 else ""
 
 
 def plain_names(text: str, derivation: Derivation) -> str:
@@ -68,11 +66,8 @@ def per_leg_names(derivation: Derivation) -> dict[str, str]:
     found = {name: leg_type for name, leg_type in entries.items() if leg_type}
     found |= {name: leg_type for name, (leg_type, _) in table.branches.items()}
     for given in derivation.givens:
-        prefix = given.frame.split(".")[0]
-        names = {n for component in given.components for n in names_in(component)}
-        owners = [prefix] if "." in given.frame else sorted(found[n] for n in names & found.keys())
-        if owners:
-            found[given.symbol.name] = owners[0]
+        if owner := derivation.notation[given.symbol.name].leg_type:
+            found[given.symbol.name] = owner
     for chapter in derivation.chapters:
         for equation in chapter.equations:
             names = names_outside_sums(equation.rhs)

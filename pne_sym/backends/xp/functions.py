@@ -76,14 +76,17 @@ class Code(PythonText):
 
     def _inputs(self, function: Function) -> list[str]:
         """Names for prepared values, and for the entries of the input vectors that are read."""
-        read = set[str]().union(*map(symbols, function.blocks)) | slices(function).reads_before
+        parts = slices(function)
+        read = set[str]().union(*map(symbols, function.blocks)) | parts.reads_before
         named = [n for n in function.shared if n in read]
         named += [n for names in function.per_leg.values() for n in names]
         lines = [f'{name} = s.prepared["{name}"]' for name in named]
         for vector in function.inputs:
             size = self.bundle.coordinates.sizes[_SIZES[vector]]
             entries = [(k, f"{vector}_{k}") for k in range(size)]
-            lines += [f"{name} = {vector}[{k}, ...]" for k, name in entries if name in read]
+            lines += [
+                f"{name} = {vector}[{k}, ...]" for k, name in entries if name in parts.entries
+            ]
         return lines
 
     def _array(self, function: Function, name: str) -> list[str]:
