@@ -103,6 +103,15 @@ def test_nothing_states_which_kind_but_the_kinds() -> None:
     }
 
 
+@pytest.mark.parametrize("kind", KINDS, ids=repr)
+def test_every_kind_has_a_row_in_the_docs(kind: Kind) -> None:
+    page = (ROOT / "docs/spec-format.md").read_text(encoding="utf-8")
+    heading = "### Platform joint" if isinstance(kind, PlatformJointKind) else "### Joints"
+    section = page.split(heading)[1].split("\n### ")[0]
+    name = f"`{kind}`" if str(kind) == kind.word else f"`{kind}` {kind.word}"
+    assert section.count(f"\n| {name} ") == 1
+
+
 def test_a_joint_without_pitch_has_none() -> None:
     joint = Joint(JointKind.REVOLUTE, Z, pitch=3.0)
     assert (joint.turn, joint.advance) == (1.0, 0.0)

@@ -42,6 +42,8 @@ def copy(tmp_path: Path) -> Path:
     folder.mkdir()
     for name in ("pne_sym", "templates"):
         shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
+    (folder / "docs").mkdir()
+    shutil.copy(ROOT / "docs/spec-format.md", folder / "docs")
     return folder
 
 
@@ -95,6 +97,64 @@ def test_an_output_function(copy: Path) -> None:
     run(copy, "-c", check)
 
 
+def specification(copy: Path, model: str, name: str, *changes: tuple[str, str]) -> str:
+    """A model of the catalogue under another name, with changes of its text; its file."""
+    text = (copy / f"pne_sym/manipulators/{model}.toml").read_text(encoding="utf-8")
+    for old, new in ((f'"{model}"', f'"{name}"'), *changes):
+        assert old in text, old
+        text = text.replace(old, new)
+    (copy / f"{name}.toml").write_text(text, encoding="utf-8")
+    return f"{name}.toml"
+
+
+def documented(copy: Path, blocks: list[Block], letter: str) -> None:
+    """The row of a kind stands in its table, below the others."""
+    (row,) = (b.text for b in blocks if b.language == "md")
+    assert row.startswith(f"| `{letter}` ")
+    page = (copy / "docs/spec-format.md").read_text(encoding="utf-8").splitlines()
+    before = page[page.index(row.rstrip()) - 1]
+    assert before.startswith("| `")
+
+
+def test_a_joint_kind(copy: Path) -> None:
+    blocks = recipe("Add a joint kind")
+    assert len(blocks) == 3
+    write(copy, blocks)
+    documented(copy, blocks, "N")
+    nuts = (('kind = "H"', 'kind = "N"'), (", 5.0]", ", 0.25]"))
+    names = "hexapod_6uhs", specification(copy, "hexapod_6uhs", "hexapod_6uns", *nuts)
+    for name in names:
+        run(copy, *PNE_GEN, name, "--target", "numpy", "--out", "generated_here")
+    run(copy, "-c", blocks[-1].text)
+    report = (copy / "generated_here/hexapod_6uns/hexapod_6uns.md").read_text(encoding="utf-8")
+    assert "| 3 | nut | driven |" in report
+    told = run(copy, *PNE_GEN, "new", "mine.toml", "--legs", "6-UNS")
+    assert (copy / "mine.toml").is_file(), told
+
+
+def test_a_platform_joint(copy: Path) -> None:
+    blocks = recipe("Add a platform joint")
+    assert len(blocks) == 3
+    write(copy, blocks)
+    documented(copy, blocks, "slotted")
+    end = 'kind = "U", axis_link = "y"'
+    slotted = specification(
+        copy, "tripod_3upu", "tripod_slotted", (end, end.replace('"U"', '"slotted"'))
+    )
+    hinge = '[[leg_types.upu.joints]]\nkind = "R"\naxis = "y"\n\n# base_point (base frame'
+    hinged = specification(
+        copy,
+        "tripod_3upu",
+        "tripod_hinged",
+        (end, 'kind = "R", axis_link = "z"'),
+        ("# base_point (base frame", hinge),
+        (", 0.8],", ", 0.8, -0.2],"),
+    )
+    for name in (slotted, hinged):
+        run(copy, *PNE_GEN, name, "--target", "numpy", "--out", "generated_here")
+    run(copy, "-c", blocks[-1].text)
+
+
 def test_a_back_end(copy: Path) -> None:
     blocks = recipe("Add a back end")
     assert len(blocks) == 3
@@ -113,5 +173,7 @@ def test_every_recipe_is_tested() -> None:
     recipes = PAGE.split("## Recipes")[1]
     assert re.findall(r"^### (.*)$", recipes, re.MULTILINE) == [
         "Add an output function",
+        "Add a joint kind",
+        "Add a platform joint",
         "Add a back end",
     ]
