@@ -44,7 +44,8 @@ help: ## List the targets
 .PHONY: demo
 demo: $(VENV)/core.stamp ## Generate the Stewart platform's model, then show it at work
 	$(BIN)/pne-gen stewart --out generated/
-	$(BIN)/python bench/demo.py
+	$(BIN)/pne-gen stewart --target ext --out build/demo
+	$(BIN)/python bench/demo.py build/demo/stewart
 
 .PHONY: test
 test: $(VENV)/test.stamp ## Run the tests; of long lists of cases, a sample
@@ -55,7 +56,7 @@ test-all: $(VENV)/test.stamp ## Run the tests, every case
 	$(BIN)/python -m pytest $(PYTEST_ARGS) -m ""
 
 .PHONY: targets
-targets: $(VENV)/targets.stamp ## Test all array-API modules (NumPy, JAX, PyTorch, Dask) and Octave packages
+targets: $(VENV)/targets.stamp ## Test all extension modules, array-API modules (NumPy, JAX, PyTorch, Dask) and Octave packages
 	$(BIN)/python -m pytest -n 0 -o norecursedirs=".*" tests/targets
 
 .PHONY: bench

@@ -1,17 +1,16 @@
 """The generated Stewart platform at work: forces along a motion, from NumPy and from compiled C.
 
-Run by `make demo`, after `pne-gen stewart --out generated/`.
+Run by `make demo`, after `pne-gen stewart --out generated/`; the argument is a folder with
+stewart_ext.py, of `pne-gen stewart --target ext`.
 """
 
 from __future__ import annotations
 
-import ctypes
+import importlib
 import json
-import shutil
-import subprocess
 import sys
-import tempfile
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 
@@ -48,56 +47,14 @@ def motion(t: Array) -> tuple[Array, Array, Array]:
     return X, rate, acceleration
 
 
-SIZE = """\
-#include "stewart.h"
-size_t size_of_model(void);
-size_t size_of_model(void) { return sizeof(stewart_model); }
-"""
-
-
-def compiled(folder: str) -> ctypes.CDLL | None:
-    """The C module and the size of its model as a shared library, or None without a compiler."""
-    compiler = shutil.which("gcc") or shutil.which("cc")
-    if compiler is None:
+def extension(folder: Path) -> ModuleType | None:
+    """The C as a Python module, compiled unless it has been; None where that cannot be."""
+    sys.path.insert(0, str(folder))
+    try:
+        return importlib.import_module("stewart_ext")
+    except ImportError as error:
+        print(f"\nC: NOT RUN, {error}")
         return None
-    library, size = Path(folder) / "stewart.so", Path(folder) / "size.c"
-    size.write_text(SIZE, encoding="utf-8")
-    subprocess.run(
-        [
-            compiler,
-            "-std=c99",
-            "-O3",
-            "-fno-math-errno",
-            "-shared",
-            "-fPIC",
-            f"-I{FOLDER}",
-            str(FOLDER / "stewart.c"),
-            str(size),
-            "-o",
-            str(library),
-            "-lm",
-        ],
-        check=True,
-    )
-    found = ctypes.CDLL(str(library))
-    found.size_of_model.restype = ctypes.c_size_t
-    return found
-
-
-def forces_from_c(library: ctypes.CDLL, X: Array, V: Array, A: Array) -> Array:
-    """Actuator forces of every state from the compiled module."""
-    pointer = ctypes.POINTER(ctypes.c_double)
-    tau = np.empty((len(X), stewart.NU))
-    model = ctypes.create_string_buffer(library.size_of_model())
-    defaults = ctypes.byref(ctypes.c_char.in_dll(library, "stewart_default_params"))
-    if library.stewart_prepare(defaults, model) != 0:
-        raise RuntimeError("stewart_prepare refused the default parameters")
-    for state in zip(X, V, A, tau, strict=True):
-        x, v, a, out = (row.ctypes.data_as(pointer) for row in state)
-        status = library.stewart_inverse_dynamics(model, x, v, a, None, out)
-        if status != 0:
-            raise RuntimeError(f"stewart_inverse_dynamics: status {status}")
-    return tau
 
 
 def main() -> None:
@@ -109,14 +66,10 @@ def main() -> None:
     print("   t [s] " + "".join(f"   leg {k + 1}" for k in range(stewart.NU)))
     for instant, row in zip(t, tau, strict=True):
         print(f"  {instant:6.2f} " + "".join(f"{force:8.2f}" for force in row))
-    with tempfile.TemporaryDirectory() as folder:
-        library = compiled(folder)
-        if library is None:
-            print("\nC: NOT RUN, no C compiler found")
-        else:
-            X, V, A = (np.ascontiguousarray(v) for v in (X, V, A))
-            gap = np.max(np.abs(forces_from_c(library, X, V, A) - tau)) / np.max(np.abs(tau))
-            print(f"\nThe same from the compiled C: largest relative difference {gap:.1e}")
+    compiled = extension(Path(sys.argv[1]))
+    if compiled is not None:
+        gap = np.max(np.abs(compiled.inverse_dynamics(X, V, A) - tau)) / np.max(np.abs(tau))
+        print(f"\nThe same from the compiled C: largest relative difference {gap:.1e}")
     manifest = json.loads((FOLDER / "stewart.json").read_text(encoding="utf-8"))
     print("\nOperations for one state (mul, add, div, sqrt), six legs, live parameters:")
     for name, what in (

@@ -12,6 +12,7 @@ from pne_sym.backends.numpy_functions import FunctionText, Places
 from pne_sym.backends.numpy_public import OPERATIONS, public_text, steps_text
 from pne_sym.backends.numpy_support import needed
 from pne_sym.backends.numpy_text import PythonText
+from pne_sym.backends.python_public import default_lines, exported
 from pne_sym.backends.templating import render
 from pne_sym.derivation import AxisRelation
 from pne_sym.program import interpret, iteration, linear, operations
@@ -69,10 +70,10 @@ class NumpyBackend:
         fields = field_views(bundle)
         return ModuleView(
             describe(bundle),
-            _exported(bundle),
+            exported(bundle),
             fields,
             tuple(bundle.derivation.parameters.relations),
-            tuple(line for f in fields for line in _default_lines(f)),
+            tuple(line for f in fields for line in default_lines(f)),
             _shapes(functions, bundle),
             places.lines(),
             tuple(c.joints.index(a) for a in c.actuators),
@@ -128,12 +129,6 @@ def _shapes(
     return tuple((name, bundle.program.shapes[name]) for name in names)
 
 
-def _exported(bundle: Bundle) -> tuple[str, ...]:
-    """Sizes, then the rest by name."""
-    names = [f.name for f in bundle.program.public if f.is_exported]
-    return (*bundle.coordinates.sizes, *sorted(("HOME_Q", "HOME_X", "Parameters", *names)))
-
-
 def _closure(bundle: Bundle, closure: Closure) -> str:
     """A row of the table of closures."""
     function = bundle.program.functions[closure.function]
@@ -141,13 +136,6 @@ def _closure(bundle: Bundle, closure: Closure) -> str:
     signs = f'_BRANCHES["{closure.sign_name}"]' if closure.rows else "()"
     facts = f"{function.inputs}, {function.arrays}, {joints}, {list(closure.turning)}"
     return f"(_run_{closure.function}, {facts}, {list(closure.rows)}, {signs})"
-
-
-def _default_lines(f: FieldView) -> list[str]:
-    """Lines of a parameter's default, one per leg."""
-    if not f.per_leg:
-        return [f'"{f.name}": {f.rows[0]},']
-    return [f'"{f.name}": [', *(f"    {row}," for row in f.rows), "],"]
 
 
 def _branches(bundle: Bundle) -> tuple[str, ...]:

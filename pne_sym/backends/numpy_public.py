@@ -5,11 +5,10 @@ from __future__ import annotations
 import textwrap
 
 from pne_sym.backends.numpy_text import WIDTH, unpacked
+from pne_sym.backends.python_public import definition, rows
 from pne_sym.backends.scalar import wrap
-from pne_sym.program.interpret import inputs_read
 from pne_sym.program.ir import Program
-from pne_sym.program.operations import ORTHONORMAL
-from pne_sym.program.public import Apply, Argument, Default, PublicFunction, Run, Step
+from pne_sym.program.public import Apply, PublicFunction, Run, Step
 
 _EXPRESSIONS = {
     "add": "{0} + {1}",
@@ -110,91 +109,10 @@ def _places(numbers: tuple[int, ...]) -> str:
     return str(list(numbers))
 
 
-# ---- what users call ---------------------------------------------------------------------------
-
-
 def public_text(program: Program, function: PublicFunction) -> str:
     """The function that users call."""
-    optional = [f"{a.name}=None" for a in function.optional]
-    optional += ["nearest=False"] * any(map(_is_rotation, function.inputs))
-    arguments = [a.name for a in function.required] + ["p=None"] * function.needs_model
-    arguments += ["*", *optional] if optional else []
-    read = inputs_read(program, function)
-    rows = [f"    {_row(a, is_read=a.name in read)}," for a in function.inputs]
-    mode = ["    mode=_Judged,"] * function.gives_status
     p = "p" if function.needs_model else "None"
-    call = ["return _call(", f'    "{function.name}", _steps_{function.name}, {p},', *rows, *mode]
-    lines = [*_docstring(function), *call, ")"]
-    head = f"def {function.name}({', '.join(arguments)}):"
-    return "\n".join((head, textwrap.indent("\n".join(lines), "    ").replace("\n    \n", "\n\n")))
-
-
-def _is_rotation(argument: Argument) -> bool:
-    """Matrices that are given are rotation matrices."""
-    return len(argument.value.shape) == 2
-
-
-def _row(argument: Argument, *, is_read: bool) -> str:
-    """An argument with the shape of a state, its default, and what rule it obeys."""
-    name, shape = argument.name, ", ".join(argument.dimensions)
-    shape += "," * (len(argument.dimensions) == 1)
-    value = name
-    if _is_rotation(argument):
-        value = f"_rotations({name}, {argument.value.shape[0]}, nearest)"
-    elif argument.value.size == 0:
-        value = f"np.zeros(0) if {name} is None else {name}"
-    rule = "positive" if argument.positive else "" if is_read else "unused"
-    parts = [f'"{name}"', value, f"({shape})"]
-    if argument.default or rule:
-        parts.append(_FILL[argument.default])
-    if rule:
-        parts.append(f'"{rule}"')
-    return f"({', '.join(parts)})"
-
-
-def _docstring(function: PublicFunction) -> list[str]:
-    notes = [line for note in function.notes for line in ("", *_filled(note, ""))]
-    inputs = [_described(a.name, a) for a in function.inputs]
-    rotation = any(map(_is_rotation, function.inputs))
-    if rotation:
-        inputs.append(
-            "nearest: take the rotation that is nearest to R: the least sum of squared differences."
-        )
-    inputs += ["p: parameters, by default those of the specification."] * function.needs_model
-    outputs = [_described(a.label, a) for a in function.outputs]
-    outputs += [f"status: {_STATUS} (...)."] * function.gives_status
-    return [
-        *_filled(f'"""{function.meaning}', ""),
-        *notes,
-        "",
-        "Args:",
-        *(line for text in inputs for line in _filled(text, "    ")),
-        "",
-        "Returns:",
-        *(line for text in outputs for line in _filled(text, "    ")),
-        *(["", "Raises:", *_filled(_NO_ROTATION, "    ")] if rotation else []),
-        '"""',
-    ]
-
-
-_NO_ROTATION = (
-    f"ValueError: R has not orthonormal rows, to {ORTHONORMAL:g}, and determinant +1, or no single "
-    "nearest rotation."
-)
-_FILL = {None: "None", Default.ZEROS: "0.0", Default.ONES: "1.0", Default.HOME_Q: "HOME_Q"}
-_BY_DEFAULT = {Default.ZEROS: "zero", Default.ONES: "one", Default.HOME_Q: "HOME_Q"}
-_STATUS = "0 OK, 1 unreachable, 2 singular leg, 3 invalid, 4 not converged, as in C"
-
-
-def _described(name: str, argument: Argument) -> str:
-    shape = ", ".join(("...", *argument.dimensions)) if argument.dimensions else "...,"
-    meaning = f"{name}: {argument.meaning}"
-    if argument.default and "by default" not in meaning:
-        meaning += f", by default {_BY_DEFAULT[argument.default]}"
-    return f"{meaning} ({shape})."
-
-
-def _filled(text: str, indent: str) -> list[str]:
-    """Lines of a paragraph."""
-    more = indent + "    " * bool(indent)
-    return textwrap.wrap(text, WIDTH - 4, initial_indent=indent, subsequent_indent=more)
+    call = ["return _call(", f'    "{function.name}", _steps_{function.name}, {p},']
+    call += [f"    {row}" for row in rows(program, function)]
+    call += ["    mode=_Judged,"] * function.gives_status
+    return definition(function, [*call, ")"])

@@ -71,6 +71,12 @@ TARGETS: tuple[Target, ...] = (
         syntax=_MATLAB,
     ),
     Target(
+        "ext",
+        "Python that compiles the C: NumPy's functions, fast",
+        "pne_sym.backends.ext:ExtBackend",
+        files=("{name}_ext.py",),
+    ),
+    Target(
         "manifest",
         "what the model consists of, for programs",
         "pne_sym.backends.manifest:ManifestBackend",

@@ -273,7 +273,7 @@ def test_from_python(tmp_path: Path) -> None:
 @pytest.mark.parametrize("command", [("stewart",), ("all",), ("check", "stewart")])
 def test_an_unknown_target_is_refused_before_all_else(command: str, tmp_path: Path) -> None:
     done = pne_gen(*command, "--out", tmp_path / "out", "--target", "numpy,matlab")
-    allowed = "numpy, c, xp, octave, with commas between"
+    allowed = "numpy, c, xp, octave, ext, with commas between"
     assert_refused(done, f"no target 'matlab'; allowed are {allowed}")
     assert not (tmp_path / "out").exists()
 
