@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from pne_sym.backends import registry
 from pne_sym.cli.console import Report
 from pne_sym.cli.faults import DIFFERENT, told
-from pne_sym.cli.options import Debug, Source
+from pne_sym.cli.options import Debug
+from pne_sym.cli.options import Source as Specification
+
+if TYPE_CHECKING:
+    from pne_sym.review.collection import Options
+    from pne_sym.review.difference import Comparison
+    from pne_sym.review.sources import Source
 
 
 def explain(
-    source: Source,
+    source: Specification,
     equation: Annotated[
         str | None,
         typer.Argument(
@@ -94,16 +101,32 @@ def diff(  # noqa: PLR0913, PLR0917 - one option each
             "whose code you would run.",
         ),
     ] = False,
+    c: Annotated[
+        bool,
+        typer.Option("--c/--no-c", help="With --run: compile and execute the C too."),
+    ] = True,
+    label: Annotated[
+        str,
+        typer.Option(
+            "--as",
+            metavar="PATH",
+            show_default=False,
+            help="What A and B are called: a/PATH, b/PATH. For git, which names temporary files.",
+        ),
+    ] = "",
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Tell only by exit code.")] = False,
     debug: Debug = False,
 ) -> None:
     """Compare two versions of a model by meaning.
 
-    Function by function and equation by equation: identical text, different text with
-    equal values, or different values, and where first along the derivation; what changed
-    in parameters, coordinates and operation counts. Values are compared at random
-    parameters and states. Exit code 0: interface and values are the same. 1: different,
-    or not all was compared.
+    What was done first: the specification, field by field, in words. Then what it means:
+    equations new, gone, changed; functions whose values differ at equal parameters; the
+    effect on required forces, the least eigenvalue of M, the condition of H. Any two
+    models can be compared; legs and joints are matched by name and likeness. Exit code 0:
+    interface and values are the same. 1: different, or not all was compared.
+
+    A and B may be folders of models (generated folders, specifications), and /dev/null
+    stands for a model that is not there.
 
     Folders that are equal to the byte are identical. Otherwise each is compared with what
     this pne-gen prints from the specification in its manifest: where that is what stands
@@ -112,19 +135,50 @@ def diff(  # noqa: PLR0913, PLR0917 - one option each
     """
     with told(debug=debug):
         from pne_sym.generation import InputError
-        from pne_sym.review import diff_text
-        from pne_sym.review.compare import compare
-        from pne_sym.review.versions import find_version
+        from pne_sym.review.collection import Options
+        from pne_sym.review.sources import find_source
 
         if as_json and as_markdown:
             raise InputError("--json and --markdown exclude each other")
-        versions = find_version(before), find_version(after)
-        found = compare(*versions, tolerance=tolerance, run=run)
-        if as_json:
-            lines = iter([diff_text.as_json(found)])
-        else:
-            lines = diff_text.as_markdown(found) if as_markdown else diff_text.as_text(found)
+        labels = (f"a/{label}", f"b/{label}") if label else ("", "")
+        sources = find_source(before, labels[0]), find_source(after, labels[1])
+        form = "json" if as_json else "markdown" if as_markdown else "text"
+        equal, lines = _answer(*sources, Options(tolerance, run, c), form)
         for line in () if quiet else lines:
             Report().difference(line)
-        if not found.equal:
+        if not equal:
             raise typer.Exit(DIFFERENT)
+
+
+def _answer(
+    before: Source, after: Source, options: Options, form: str
+) -> tuple[bool, Iterable[str]]:
+    """Whether all is equal, and the lines of the answer."""
+    from pne_sym.review import collection, diff_text, markdown
+    from pne_sym.review.identical import identical
+    from pne_sym.review.sources import same_bytes
+
+    if before.models is None and after.models is None and not (before.is_none or after.is_none):
+        if before.folder is not None and same_bytes(before, after):
+            found = identical(before, after, options.tolerance)
+        else:
+            from pne_sym.review.compare import compare
+            from pne_sym.review.versions import version_of
+
+            found = compare(
+                version_of(before), version_of(after),
+                tolerance=options.tolerance, run=options.run, c=options.c,
+            )  # fmt: skip
+        one: dict[str, Callable[[Comparison], Iterable[str]]] = {
+            "json": lambda c: [diff_text.as_json(c)],
+            "markdown": markdown.as_markdown,
+            "text": diff_text.as_text,
+        }
+        return found.equal, one[form](found)
+    parts = collection.compare_sources(before, after, options)
+    if form == "json":
+        lines: Iterable[str] = [collection.as_json(before, after, parts)]
+    else:
+        text = form == "text"
+        lines = collection.as_text(before, after, parts) if text else markdown.comment(parts)
+    return all(p.is_equal for p in parts), lines

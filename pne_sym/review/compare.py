@@ -10,31 +10,36 @@ True
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from pne_sym.backends import registry
-from pne_sym.backends.describe import Described, describe
+from pne_sym.review.alignment import Alignment, align
 from pne_sym.review.blocks import Terms, c_blocks, numpy_blocks
 from pne_sym.review.difference import (
     BlockDifference,
     Change,
     Comparison,
     Deviation,
+    Edit,
     EquationDifference,
     Verdict,
 )
+from pne_sym.review.edits import best_edits
+from pne_sym.review.effect import effects
 from pne_sym.review.equations import DerivationComparer
 from pne_sym.review.execution import ExecutionError
 from pne_sym.review.files import differing, file_differences
 from pne_sym.review.interface import interface_changes, operation_changes
-from pne_sym.review.model import Model, printed_equations
+from pne_sym.review.model import Model, by_path, printed_equations
+from pne_sym.review.programs import first_statement, same_derivation, same_program
 from pne_sym.review.reproduction import reproduced
+from pne_sym.review.samples import length_of
 from pne_sym.review.sandbox import best_isolation
 from pne_sym.review.values import Runs
-from pne_sym.review.written import as_written
 
 TOLERANCE = 1e-9
 
@@ -46,6 +51,7 @@ def compare(
     tolerance: float = TOLERANCE,
     seed: int = 0,
     run: bool = False,
+    c: bool = True,
 ) -> Comparison:
     """Compare two versions of a model.
 
@@ -60,6 +66,7 @@ def compare(
         tolerance: relative; values nearer than this are equal.
         seed: of the random parameters and states.
         run: execute the NumPy modules, and compile and execute the C, of both.
+        c: with `run`, the C too.
     """
     found = Comparison(before.label, after.label, tolerance, (0, 0), (), (), (), ())
     changed: list[str] = []
@@ -80,10 +87,12 @@ def compare(
         found,
         deviations=(*before.deviations, *after.deviations),
         operations=tuple(operation_changes(before, after)),
+        specification=_specification(before, after),
     )
+    alignment = align(before.manifest, after.manifest, (before.written, after.written))
     if ours or run:
         try:
-            return _with_values(found, before, after, seed, run=run)
+            return _with_values(found, _Pair(before, after, alignment, seed, run=run, c=c))
         except ExecutionError as error:
             found = replace(found, not_compared=str(error))
     else:
@@ -91,9 +100,34 @@ def compare(
     return replace(
         found,
         equations=tuple(_compare_reports(before.report, after.report)),
-        interface=tuple(interface_changes(before, after, {}, {})),
+        interface=tuple(interface_changes(before, after, (), alignment)),
         notes=tuple(_notes(before, after, run=run)),
     )
+
+
+@dataclass(frozen=True)
+class _Pair:
+    """Two versions that may be run, and how."""
+
+    before: Model
+    after: Model
+    alignment: Alignment
+    seed: int
+    run: bool
+    c: bool
+
+    @property
+    def ours(self) -> bool:
+        """Whether the derivations of both are known."""
+        return self.before.bundle is not None and self.after.bundle is not None
+
+
+def _specification(before: Model, after: Model) -> tuple[Edit, ...] | None:
+    """What was edited, where both versions hold their specifications."""
+    forms = [m.manifest.get("specification") for m in (before, after)]
+    if forms[0] is None or forms[1] is None:
+        return None
+    return best_edits((forms[0], forms[1]), (before.written, after.written))
 
 
 def _of_the_same_targets(before: Model, after: Model) -> tuple[Model, Model]:
@@ -121,56 +155,109 @@ def _reason(deviations: tuple[Deviation, ...]) -> str:
     )
 
 
-def _with_values(
-    found: Comparison, before: Model, after: Model, seed: int, *, run: bool
-) -> Comparison:
+def _with_values(found: Comparison, of: _Pair) -> Comparison:
     """The comparison with everything that is found by running both versions."""
-    runs = Runs(before, after, seed)
-    equations: tuple[EquationDifference, ...]
-    if before.bundle and after.bundle and runs.comparable:
-        equations = DerivationComparer(
-            before.bundle.derivation, after.bundle.derivation, runs.samples(), found.tolerance
-        ).compare()
-    else:
-        equations = tuple(_compare_reports(before.report, after.report))
-    interface = as_written(
-        interface_changes(before, after, *runs.defaults), before.written, after.written
-    )
+    before, after = of.before, of.after
+    if before.bundle and after.bundle and same_program(before.bundle, after.bundle):
+        return _of_equal_text(found, of)
+    runs = Runs(before, after, of.seed, of.alignment)
     found = replace(
         found,
         samples=(len(runs.kept), runs.states),
-        blocks=tuple(_blocks(before, after, runs, found.tolerance, run=run)),
-        equations=equations,
-        interface=(*interface, *_constants(before, after, runs)),
+        blocks=tuple(_blocks(of, runs, found.tolerance)),
+        equations=_equations(of, runs, found.tolerance),
+        interface=(
+            *interface_changes(before, after, runs.defaults, of.alignment),
+            *(_constants(before, after, runs) if runs.comparable else ()),
+        ),
     )
-    notes = [*_notes(before, after, run=run), *_notes_of_values(before, after, found, runs)]
-    return replace(found, notes=tuple(notes))
+    if before.bundle and after.bundle and same_derivation(before.bundle, after.bundle):
+        found = replace(found, statement=first_statement(before.bundle, after.bundle))
+    notes = [*_notes(before, after, run=of.run), *_notes_of_values(found, of, runs)]
+    return _with_effects(replace(found, notes=tuple(notes)), of, runs.defaults)
 
 
-def _blocks(
-    before: Model, after: Model, runs: Runs, tolerance: float, *, run: bool
-) -> Iterator[BlockDifference]:
+def _of_equal_text(found: Comparison, of: _Pair) -> Comparison:
+    """Two versions whose functions have the same text: only defaults can differ."""
+    before, after = of.before, of.after
+    assert before.bundle is not None
+    assert after.bundle is not None
+    names = [f.name for f in after.bundle.program.public]
+    same = Verdict.IDENTICAL
+    derivation = after.bundle.derivation
+    owner = {e.name: c.leg_type or "" for c in derivation.chapters for e in c.equations}
+    new = {of.alignment.canonical(p): v for p, v in _defaults(after).items()}
+    defaults = [_defaults(before), new]
+    names += ["C: all functions"] if of.run else []
+    found = replace(
+        found,
+        blocks=(*(BlockDifference(name, same) for name in names), *_not_run(before, after, of.run)),
+        equations=tuple(
+            EquationDifference(e.id, e.name, e.title, owner[e.name], same)
+            for e in derivation.equations()
+        ),
+        interface=tuple(interface_changes(before, after, defaults, of.alignment)),
+        notes=tuple(_notes(before, after, run=of.run)),
+    )
+    return _with_effects(found, of, defaults)
+
+
+def _defaults(model: Model) -> dict[str, Any]:
+    assert model.bundle is not None
+    fields = model.bundle.derivation.parameters.fields
+    return by_path(model, {f.name: f.default for f in fields})
+
+
+def _with_effects(
+    found: Comparison, of: _Pair, defaults: Sequence[Mapping[str, Any]]
+) -> Comparison:
+    """What the change does to required forces and the like, unless nothing was changed."""
+    if found.equal and not found.interface:
+        return found
+    size = length_of({**defaults[1], **defaults[0]})
+    try:
+        told = effects(of.before, of.after, of.alignment, size=size, seed=of.seed)
+    except ExecutionError as error:
+        return replace(found, notes=(*found.notes, f"effects are not known: {error}"))
+    return replace(found, effects=told)
+
+
+def _equations(of: _Pair, runs: Runs, tolerance: float) -> tuple[EquationDifference, ...]:
+    before, after = of.before, of.after
+    if not (before.bundle and after.bundle):
+        return tuple(_compare_reports(before.report, after.report))
+    old, new = before.bundle.derivation, after.bundle.derivation
+    return DerivationComparer(old, new, runs.samples(), tolerance, of.alignment).compare()
+
+
+def _blocks(of: _Pair, runs: Runs, tolerance: float) -> Iterator[BlockDifference]:
     """All functions of the NumPy modules, and of C where the code of folders is run."""
+    before, after = of.before, of.after
     if not runs.comparable:
-        yield BlockDifference("all functions", Verdict.DIFFERENT)
+        yield BlockDifference("all functions", Verdict.DIFFERENT, note=_OTHER_COORDINATES)
         return
     actuators = before.manifest["sizes"]["NU"]
     terms = Terms(runs.kept, tolerance, {**after.functions, **before.functions}, actuators)
     same = _SameText(before, after)
     yield from numpy_blocks(*runs.answers, terms, same)
-    if run and before.c == after.c:
+    if of.run and before.c == after.c:
         yield BlockDifference("C: all functions", Verdict.IDENTICAL)
-    elif run:
+    elif of.run and not of.c:
+        yield BlockDifference("C", Verdict.NOT_COMPARED, note="left out by --no-c")
+    elif of.run:
         answers, faults = runs.c_answers()
         yield from (BlockDifference("C", Verdict.NOT_COMPARED, note=fault) for fault in faults)
         if answers is not None:
             yield from c_blocks(*answers, terms)
-    yield from _not_run(before, after) if run else ()
+    yield from _not_run(before, after, of.run)
 
 
-def _not_run(before: Model, after: Model) -> Iterator[BlockDifference]:
-    """Code of both versions that differs and that cannot be run here."""
-    for of in registry.TARGETS:
+_OTHER_COORDINATES = "X or V have other entries: no function has a counterpart"
+
+
+def _not_run(before: Model, after: Model, run: bool) -> Iterator[BlockDifference]:
+    """With --run, code of both versions that differs and that cannot be run here."""
+    for of in registry.TARGETS if run else ():
         chosen = of.name in before.targets and of.name in after.targets
         if not chosen or of.runs or of.always:
             continue
@@ -187,16 +274,9 @@ class _SameText:
     """
 
     def __init__(self, before: Model, after: Model) -> None:
-        self.whole = before.python == after.python
         self.before, self.after = before.bundle, after.bundle
-        if self.before is not None and self.after is not None:
-            facts = [self._facts(describe(b)) for b in (self.before, self.after)]
-            programs = [b.program for b in (self.before, self.after)]
-            self.whole |= facts[0] == facts[1] and programs[0] == programs[1]
-
-    @staticmethod
-    def _facts(d: Described) -> Described:
-        return replace(d, name="", upper="", title="")
+        ours = self.before is not None and self.after is not None
+        self.whole = not ours and before.python == after.python
 
     def __call__(self, name: str) -> bool:
         if self.whole or self.before is None or self.after is None:
@@ -276,16 +356,16 @@ def _notes(before: Model, after: Model, *, run: bool) -> Iterator[str]:
             )
 
 
-def _notes_of_values(before: Model, after: Model, found: Comparison, runs: Runs) -> Iterator[str]:
+def _notes_of_values(found: Comparison, of: _Pair, runs: Runs) -> Iterator[str]:
     """How far the comparison of values goes."""
-    if not runs.comparable:
-        yield "X or V have other entries: values cannot be compared"
-    elif not runs.states:
+    if runs.comparable and not runs.states:
         yield "no state was found that either version allows: values were not compared"
+    if not runs.common:
+        yield "no state is possible at equal parameters: each version has its own"
     if (
-        before.bundle is not None
-        and after.bundle is not None
+        of.ours
         and any(b.verdict is Verdict.DIFFERENT for b in found.blocks)
-        and not found.origins
+        and not found.structure
+        and runs.comparable
     ):
         yield "all equations agree: what differs is outside them (lowering, branches, home)"

@@ -1,15 +1,45 @@
-"""A comparison as text for the terminal and as Markdown for a pull request."""
+"""A comparison in sections, for the terminal: what was done, then what it means.
+
+First the specification, then equations, values, effects; rewritings and counts come last.
+"""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from dataclasses import dataclass
 
-from pne_sym.review.difference import BlockDifference, Comparison, EquationDifference, Gap, Verdict
+from pne_sym.review.difference import (
+    BlockDifference,
+    Change,
+    Comparison,
+    Edit,
+    EquationDifference,
+    Gap,
+    Verdict,
+)
+from pne_sym.review.effect_text import effect_lines
+from pne_sym.review.interface_text import interface_lines, listed
 
-_SHOWN = 8
-"""Equations shown with their formulas; further ones are listed by id."""
-_LONG = 100
+_SHOWN = 6
+"""Equations of a kind shown with their formulas; further ones are listed by id."""
+_EDITS = 12
+_SAME = (Verdict.IDENTICAL, Verdict.EQUAL)
+
+
+@dataclass(frozen=True)
+class Section:
+    """A part of the answer.
+
+    Attributes:
+        title: what it is about.
+        lines: those that begin with - and + are before and after.
+        detail: of second rank: folded where that is possible.
+    """
+
+    title: str
+    lines: tuple[str, ...]
+    detail: bool = False
 
 
 def as_json(found: Comparison) -> str:
@@ -18,53 +48,76 @@ def as_json(found: Comparison) -> str:
 
 
 def as_text(found: Comparison) -> Iterator[str]:
-    """Lines of plain text; those that begin with - and + are before and after."""
+    """Lines of plain text."""
     yield f"--- {found.before}"
     yield f"+++ {found.after}"
     yield verdict(found)
-    yield measured(found)
-    yield from _files(found)
-    if found.blocks:
+    if (told := measured(found)) != "":
+        yield told
+    for section in sections(found):
         yield ""
-        yield "blocks"
-    width = max((len(b.name) for b in found.blocks), default=0)
-    for block in found.blocks:
-        yield f"  {block.name:<{width}}  {_told(block)}"
-    if found.equations:
-        yield ""
-        yield from _summary(found)
-    yield from _equations(found)
-    if found.interface:
-        yield ""
-        yield "interface"
-        for change in found.interface:
-            yield f"  {change.kind}: {change.what}"
-            yield from _before_after(change.before, change.after)
-    if found.operations:
-        yield ""
-        yield "operations (mul, add, div, sqrt, trig)"
-        for o in found.operations:
-            yield f"  {o.function}: {_counts(o.before)} -> {_counts(o.after)}"
+        yield section.title
+        yield from section.lines
     for note in found.notes:
         yield f"note: {note}"
 
 
+def sections(found: Comparison) -> list[Section]:
+    """All that is told below the verdict, in the order in which people ask."""
+    made = [
+        Section("specification", tuple(_edits(found))),
+        Section("files", tuple(_files(found))),
+        Section("not what this pne-gen prints from the manifest's specification",
+                tuple(_deviations(found))),
+        Section("structure", tuple(_structure(found))),
+        Section("values, at equal parameters", tuple(_values(found))),
+        Section("interface", tuple(interface_lines(_told_elsewhere(found)))),
+        Section("effect, each version at its own defaults", tuple(effect_lines(found.effects))),
+        Section("rewritings and counts", tuple(_details(found)), detail=True),
+    ]  # fmt: skip
+    return [section for section in made if section.lines]
+
+
+# ---- the answer in one line -----------------------------------------------------------------
+
+
 def verdict(found: Comparison) -> str:
-    """The answer in one line."""
-    if not found.equal:
-        if found.not_compared:
-            return "different: not all is compared"
-        if found.origins:
-            first = found.origins[0]
-            return f"different: first at {first.id} ({first.name}), {first.title}"
-        if any(b.verdict not in (Verdict.IDENTICAL, Verdict.EQUAL) for b in found.blocks):
-            return "different"
-        if any(not f.accounted for f in found.files):
-            return "different: files differ whose text no comparison of values accounts for"
-        return "different: equal values at equal parameters, but the interface changed"
-    verdicts = {b.verdict for b in found.blocks} | {e.verdict for e in found.equations}
-    same = verdicts <= {Verdict.IDENTICAL} and not found.files
-    return "equal: identical text" if same else "equal: different text, the same values"
+    """What was done, in one line; where that is not known, what is different and where first."""
+    if found.equal:
+        verdicts = {b.verdict for b in found.blocks} | {e.verdict for e in found.equations}
+        same = verdicts <= {Verdict.IDENTICAL} and not found.files
+        return "equal: identical text" if same else "equal: different text, the same values"
+    return f"different: {_cause(found)}"
+
+
+def _cause(found: Comparison) -> str:
+    if found.specification:
+        first, *others = [e.words for e in found.specification if e.path[:4] != "home"] or [
+            e.words for e in found.specification
+        ]
+        return first + (
+            f", and {len(others)} other edit{'s' * (len(others) > 1)}" if others else ""
+        )
+    if found.not_compared:
+        place = next((f"{d.path} {d.where}" for d in found.deviations if d.path), "")
+        return "not all is compared" + (f"; first at {place}" if place else "")
+    if found.structure:
+        e = found.structure[0]
+        return f"the derivation, first at {e.id} ({e.name}), {e.title}"
+    if found.statement is not None:
+        s = found.statement
+        return f"the lowering, first at {s.equation} ({s.target}) in {s.function}"
+    bad = [b for b in found.blocks if b.verdict not in _SAME]
+    if bad:
+        place = next((f"; first at {f.path} {f.where}" for f in found.files if not f.accounted), "")
+        return f"{bad[0].name} has {bad[0].verdict}{place}"
+    files = [f for f in found.files if not f.accounted]
+    if files:
+        return (
+            "files differ whose text no comparison of values accounts for; "
+            f"first at {files[0].path} {files[0].where}"
+        )
+    return "equal values at equal parameters, but the interface changed"
 
 
 def measured(found: Comparison) -> str:
@@ -72,27 +125,48 @@ def measured(found: Comparison) -> str:
     sets, states = found.samples
     if found.not_compared:
         return f"values not compared: {found.not_compared}"
-    if not sets and found.identical_files:
+    if not found.blocks and found.identical_files:
         return f"{found.identical_files} files are equal to the byte; nothing was derived or run"
+    if not sets:
+        same = {b.verdict for b in found.blocks} == {Verdict.IDENTICAL}
+        return "the text of all functions is the same, so are values" if same else ""
     return (
         f"values compared at {states} states of {sets} parameter sets, "
         f"tolerance {found.tolerance:g} relative"
     )
 
 
+# ---- specification and files ------------------------------------------------------------------
+
+
+def _edits(found: Comparison) -> Iterator[str]:
+    edits = found.specification or ()
+    for e in edits[:_EDITS]:
+        yield from _edit(e)
+    if len(edits) > _EDITS:
+        yield from listed("and", (e.path for e in edits[_EDITS:]))
+
+
+def _edit(e: Edit) -> Iterator[str]:
+    yield f"  {e.words}  [{e.path}]"
+    if "->" not in e.words and "moved from joint" not in e.words:
+        yield from before_after(e.before, e.after)
+
+
 def _files(found: Comparison) -> Iterator[str]:
-    """Files that differ, then where folders are not what this pne-gen prints."""
-    if found.files:
-        yield ""
-        yield f"files ({found.identical_files} others are equal to the byte)"
+    """Files that differ; those that are our own text on both sides only with what differs."""
+    ours = [f.path for f in found.files if f.accounted]
+    if ours:
+        yield from listed("printed by this pne-gen on both sides:", ours)
     for f in found.files:
-        how = "printed by this pne-gen on both sides" if f.accounted else "counts as different"
-        yield f"  {f.path}: differs, {f.where} ({how})"
         if not f.accounted:
-            yield from _before_after(f.before, f.after)
-    if found.deviations:
-        yield ""
-        yield "not what this pne-gen prints from the manifest's specification"
+            yield f"  {f.path}: differs, {f.where} (counts as different)"
+            yield from before_after(f.before, f.after)
+    if found.files:
+        yield f"  {found.identical_files} others are equal to the byte"
+
+
+def _deviations(found: Comparison) -> Iterator[str]:
     for d in found.deviations:
         yield f"  {d.version}: {d.path}{', ' if d.path else ''}{d.where}"
         if d.printed or d.found:
@@ -100,7 +174,93 @@ def _files(found: Comparison) -> Iterator[str]:
             yield f"    found:   {d.found.strip()}"
 
 
-def _told(block: BlockDifference) -> str:
+# ---- equations --------------------------------------------------------------------------------
+
+_KINDS = (
+    ("changed", (Verdict.DIFFERENT, Verdict.CHANGED)),
+    ("new", (Verdict.ADDED,)),
+    ("gone", (Verdict.REMOVED,)),
+)
+
+
+def _structure(found: Comparison) -> Iterator[str]:
+    """Equations that are changed, new, gone; then how many say the same."""
+    if not found.equations:
+        return
+    for kind, verdicts in _KINDS:
+        group = [e for e in found.equations if e.verdict in verdicts]
+        if not group:
+            continue
+        yield f"  {kind}: {_counted(group)}, in order of derivation"
+        for e in group[:_SHOWN]:
+            yield from _equation(e)
+        if len(group) > _SHOWN:
+            yield from listed("and", (_place(e) for e in group[_SHOWN:]))
+    if found.statement is not None:
+        s = found.statement
+        yield (
+            f"  the derivation is the same, {s.count} statements of the program are not; "
+            f"first of ({s.equation}) in {s.function}"
+        )
+        yield from before_after(s.before, s.after)
+    yield f"  {_unchanged(found)}"
+
+
+def _unchanged(found: Comparison) -> str:
+    same = [e for e in found.equations if e.verdict not in {v for _, vs in _KINDS for v in vs}]
+    if len(same) == len(found.equations) and {e.verdict for e in same} == {Verdict.IDENTICAL}:
+        return f"no equation changed ({len(same)})"
+    parts = [f"{len(same)} equations say the same"]
+    counts = {v: sum(e.verdict is v for e in same) for v in (Verdict.FOLLOWS, Verdict.EQUAL)}
+    if counts[Verdict.FOLLOWS]:
+        parts.append(f"{counts[Verdict.FOLLOWS]} of them with values that follow from the above")
+    if counts[Verdict.EQUAL]:
+        parts.append(f"{counts[Verdict.EQUAL]} in other words")
+    sums = sorted({n for e in same for n in e.note.split("; ") if n.startswith("a sum over")})
+    return "; ".join([", ".join(parts), *sums])
+
+
+def _counted(group: list[EquationDifference]) -> str:
+    """How many, by leg type."""
+    types: dict[str, int] = {}
+    for e in group:
+        key = f"leg type {e.leg_type}" if e.leg_type else "platform"
+        types[key] = types.get(key, 0) + 1
+    return ", ".join(f"{n} of {t}" for t, n in types.items())
+
+
+def _place(e: EquationDifference) -> str:
+    return e.id if any(c.isdigit() for c in e.id) else f"{e.id} {e.name}"
+
+
+def _equation(e: EquationDifference) -> Iterator[str]:
+    yield f"  ({_place(e)}) {e.title}"
+    yield from before_after(e.before, e.after)
+    told = [_gap(e.gap)] if e.gap else []
+    if e.gap and e.gap.size != float("inf"):
+        told = [f"{told[0]}: {e.gap.before:.6g} -> {e.gap.after:.6g}"]
+    if told or e.note:
+        yield f"    {'; '.join([*told, *([e.note] if e.note else [])])}"
+
+
+# ---- values -----------------------------------------------------------------------------------
+
+
+def _values(found: Comparison) -> Iterator[str]:
+    """Functions that are not the same, one a line; the others in one."""
+    bad = [b for b in found.blocks if b.verdict not in _SAME]
+    width = max((len(b.name) for b in bad), default=0)
+    for block in bad:
+        yield f"  {block.name:<{width}}  {told(block)}"
+    same = [b.name for b in found.blocks if b.verdict in _SAME]
+    if same and not bad:
+        yield f"  all {len(same)} functions: the same"
+    elif same:
+        yield from listed("the same:", same)
+
+
+def told(block: BlockDifference) -> str:
+    """How a function compares."""
     gap = f"; {_gap(block.gap)}" if block.gap else ""
     return f"{block.verdict}{gap}" + (f"; {block.note}" if block.note else "")
 
@@ -115,136 +275,42 @@ def _gap(gap: Gap) -> str:
     return f"largest relative difference {gap.size:.2g} at {gap.where}"
 
 
-def _counts(counts: tuple[int, ...]) -> str:
-    return ", ".join(map(str, counts))
+def _told_elsewhere(found: Comparison) -> list[Change]:
+    """Changes of the interface that the specification does not tell already."""
+    if not found.specification:
+        return list(found.interface)
+    return [c for c in found.interface if not c.what.startswith("default of ") and c.what != "home"]
 
 
-def _summary(found: Comparison) -> Iterator[str]:
-    """Per leg type and for the platform, how many equations compare how."""
-    groups: dict[str, dict[Verdict, int]] = {}
-    for e in found.equations:
-        counts = groups.setdefault(f"leg type {e.leg_type}" if e.leg_type else "platform", {})
-        counts[e.verdict] = counts.get(e.verdict, 0) + 1
-    yield "equations"
-    for group, counts in sorted(groups.items()):
-        told = [f"{counts[v]} {_WORDS[v]}" for v in Verdict if v in counts]
-        yield f"  {group}: {', '.join(told)}"
+# ---- what is left -----------------------------------------------------------------------------
 
 
-_WORDS = {
-    Verdict.IDENTICAL: "identical",
-    Verdict.EQUAL: "rewritten with equal values",
-    Verdict.DIFFERENT: "different",
-    Verdict.FOLLOWS: "changed by what they use only",
-    Verdict.CHANGED: "of different text",
-    Verdict.ADDED: "added",
-    Verdict.REMOVED: "removed",
-}
-
-
-def _equations(found: Comparison) -> Iterator[str]:
-    for kind in (Verdict.DIFFERENT, Verdict.CHANGED, Verdict.EQUAL, Verdict.ADDED, Verdict.REMOVED):
-        group = [e for e in found.equations if e.verdict is kind]
-        if not group:
-            continue
-        yield ""
-        yield f"{_WORDS[kind]}, in order of derivation"
-        for e in group[:_SHOWN]:
+def _details(found: Comparison) -> Iterator[str]:
+    rewritten = [e for e in found.equations if e.verdict is Verdict.EQUAL]
+    if rewritten:
+        yield f"  rewritten with equal values: {len(rewritten)} equations"
+        for e in rewritten[:_SHOWN]:
             yield from _equation(e)
-        if len(group) > _SHOWN:
-            yield "  and " + ", ".join(_place(e) for e in group[_SHOWN:])
-    renamed = [
-        e
-        for e in found.equations
-        if e.note.startswith("renamed") and e.verdict in (Verdict.IDENTICAL, Verdict.FOLLOWS)
-    ]
-    for e in renamed:
+        if len(rewritten) > _SHOWN:
+            yield from listed("and", (_place(e) for e in rewritten[_SHOWN:]))
+    kept = (Verdict.IDENTICAL, Verdict.FOLLOWS)
+    renamed = [e for e in found.equations if "renamed:" in e.note and e.verdict in kept]
+    for e in renamed[:_SHOWN]:
         yield f"  {e.id}: {e.note}"
+    texts = [b.name for b in found.blocks if b.verdict is Verdict.EQUAL]
+    if texts:
+        yield from listed("functions of different text, equal values:", texts)
+    if found.operations:
+        yield "  operations (mul, add, div, sqrt, trig)"
+    for o in found.operations:
+        yield f"    {o.function}: {_counts(o.before)} -> {_counts(o.after)}"
 
 
-def _place(e: EquationDifference) -> str:
-    return e.id if any(c.isdigit() for c in e.id) else f"{e.id} {e.name}"
+def _counts(counts: tuple[int, ...]) -> str:
+    return ", ".join(map(str, counts)) if any(counts) else "none"
 
 
-def _equation(e: EquationDifference) -> Iterator[str]:
-    yield f"  ({_place(e)}) {e.title}"
-    yield from _before_after(e.before, e.after)
-    if e.gap:
-        told = _gap(e.gap)
-        if e.gap.size != float("inf"):
-            told += f": {e.gap.before:.6g} -> {e.gap.after:.6g}"
-        yield f"    {told}"
-    if e.note:
-        yield f"    {e.note}"
-
-
-def _before_after(before: str, after: str) -> Iterator[str]:
+def before_after(before: str, after: str) -> Iterator[str]:
+    """A text before and after, as lines of a diff."""
     yield from (f"-   {line}" for line in before.split("\n") if line)
     yield from (f"+   {line}" for line in after.split("\n") if line)
-
-
-def as_markdown(found: Comparison) -> Iterator[str]:
-    """Markdown for a comment: the verdict, a table of blocks, details folded."""
-    mark = "✅" if found.equal else "⚠️"
-    yield f"### {mark} {_escaped(verdict(found))}"
-    yield ""
-    yield f"{_code(found.before)} → {_code(found.after)}: {_escaped(measured(found))}."
-    yield ""
-    files = list(_files(found))
-    if files:
-        yield from _folded("Files", files, is_open=True)
-    if found.blocks:
-        yield "| Block | Result |"
-        yield "| --- | --- |"
-    for block in found.blocks:
-        yield f"| {_escaped(block.name)} | {_escaped(_told(block))} |"
-    yield ""
-    if found.equations:
-        yield from (_escaped(line.strip()) + "  " for line in list(_summary(found))[1:])
-    if found.interface:
-        yield ""
-        yield "**Interface**"
-        yield ""
-        for change in found.interface:
-            texts = " → ".join(_code(t) for t in (change.before, change.after) if t)
-            yield f"- {change.kind}: {_escaped(change.what)} {texts}"
-    details = list(_equations(found))
-    if details:
-        yield from _folded("Equations", details)
-    if found.operations:
-        rows = [
-            f"{o.function}: {_counts(o.before)} -> {_counts(o.after)}" for o in found.operations
-        ]
-        yield from _folded("Operations (mul, add, div, sqrt, trig)", rows)
-    for note in found.notes:
-        yield f"> {_escaped(note)}"
-
-
-def _folded(title: str, lines: list[str], *, is_open: bool = False) -> Iterator[str]:
-    fence = "`" * max(4, *(len(run) + 1 for line in lines for run in _ticks(line)))
-    yield ""
-    yield f"<details{' open' if is_open else ''}><summary>{title}</summary>"
-    yield ""
-    yield f"{fence}diff"
-    yield from lines
-    yield fence
-    yield ""
-    yield "</details>"
-    yield ""
-
-
-def _ticks(line: str) -> list[str]:
-    """Runs of backticks in a line."""
-    return "".join(c if c == "`" else " " for c in line).split() or [""]
-
-
-def _code(text: str) -> str:
-    """A text as code; long ones are cut."""
-    text = " ".join(text.split()).replace("`", "'").replace("|", "/")
-    return f"`{text[:_LONG]}{'...' if len(text) > _LONG else ''}`"
-
-
-def _escaped(text: str) -> str:
-    for mark in "\\`*_[]<>|#":
-        text = text.replace(mark, f"&#{ord(mark)};" if mark in "<>|#" else f"\\{mark}")
-    return text

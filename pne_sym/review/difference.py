@@ -91,6 +91,64 @@ class Change:
 
 
 @dataclass(frozen=True)
+class Edit:
+    """An entry of the specification that was edited.
+
+    Attributes:
+        words: what was done, for people: "leg type rpr, joint 1 (R): axis flipped".
+        path: where it stands: in the author's file, or in the full form.
+        before, after: as text; empty where there is none.
+    """
+
+    words: str
+    path: str
+    before: str = ""
+    after: str = ""
+
+
+@dataclass(frozen=True)
+class Effect:
+    """What a change does to a quantity that engineers design by.
+
+    Attributes:
+        what: "required force of leg 1", "least eigenvalue of M" ...
+        where: "at home", or at which states.
+        before, after: values; None where there is no counterpart.
+        changed: whether they differ by more than rounding.
+        unit: of the values, or empty.
+        note: the largest change where there are several states.
+    """
+
+    what: str
+    where: str
+    before: float | None
+    after: float | None
+    changed: bool
+    unit: str = ""
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class StatementDifference:
+    """The first statement of the program that differs while the derivation does not.
+
+    Attributes:
+        equation: id of its equation.
+        target: name of the value.
+        function: where it stands.
+        before, after: the statement.
+        count: how many statements differ in all.
+    """
+
+    equation: str
+    target: str
+    function: str
+    before: str
+    after: str
+    count: int
+
+
+@dataclass(frozen=True)
 class OperationChange:
     """Operation counts of a function: mul, add, div, sqrt, trig."""
 
@@ -153,6 +211,9 @@ class Comparison:
         identical_files: how many are equal to the byte.
         deviations: where the folders are not what this pne-gen prints.
         not_compared: why values were not compared; empty where they were, or need not be.
+        specification: what was edited; None where a version does not hold its specification.
+        effects: on what engineers design by, each version at its own defaults.
+        statement: where the programs of one derivation first differ.
     """
 
     before: str
@@ -168,6 +229,9 @@ class Comparison:
     identical_files: int = 0
     deviations: tuple[Deviation, ...] = ()
     not_compared: str = ""
+    specification: tuple[Edit, ...] | None = None
+    effects: tuple[Effect, ...] = ()
+    statement: StatementDifference | None = None
 
     @property
     def equal(self) -> bool:
@@ -189,6 +253,12 @@ class Comparison:
         """Equations that differ though what they use is equal; the first comes first."""
         return tuple(e for e in self.equations if e.verdict is Verdict.DIFFERENT)
 
+    @property
+    def structure(self) -> tuple[EquationDifference, ...]:
+        """Equations that are new, gone, or say something else."""
+        kinds = (Verdict.DIFFERENT, Verdict.CHANGED, Verdict.ADDED, Verdict.REMOVED)
+        return tuple(e for e in self.equations if e.verdict in kinds)
+
     def to_dict(self) -> dict[str, Any]:
         """Plain data for JSON; equations of identical text are counted, not listed."""
         listed = [e for e in self.equations if e.verdict is not Verdict.IDENTICAL]
@@ -196,12 +266,15 @@ class Comparison:
             "before": self.before,
             "after": self.after,
             "equal": self.equal,
+            "specification": [_plain(e) for e in self.specification or ()],
             "tolerance": self.tolerance,
             "samples": {"parameter_sets": self.samples[0], "states": self.samples[1]},
             "blocks": [_plain(b) for b in self.blocks],
             "first_difference": self.origins[0].id if self.origins else None,
+            "first_statement": _plain(self.statement) if self.statement else None,
             "identical_equations": len(self.equations) - len(listed),
             "equations": [_plain(e) for e in listed],
+            "effects": [_plain(e) for e in self.effects],
             "interface": [_plain(c) for c in self.interface],
             "operations": [
                 {"function": o.function, "before": list(o.before), "after": list(o.after)}
@@ -222,7 +295,7 @@ def _plain(item: Any) -> dict[str, Any]:
         if isinstance(value, Gap):
             found[name] = {k: _number(v) for k, v in vars(value).items()}
         elif value not in ("", None):
-            found[name] = str(value) if isinstance(value, enum.Enum) else value
+            found[name] = str(value) if isinstance(value, enum.Enum) else _number(value)
     return found
 
 

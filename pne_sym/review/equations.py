@@ -12,57 +12,80 @@ from typing import Any
 
 import numpy as np
 
-from pne_sym.derivation import Derivation, Equation, Output, names_in
+from pne_sym.derivation import Derivation, Equation, Frame, Given, Output, names_in
+from pne_sym.review.alignment import Alignment
 from pne_sym.review.difference import EquationDifference, Gap, Verdict
 from pne_sym.review.evaluation import State, Structure
 from pne_sym.review.measure import gap_between
+from pne_sym.review.naming import Names
 from pne_sym.review.plain import plain
+from pne_sym.vector import LegSum, TensorLegSum, VectorLegSum
 
 
 @dataclass(frozen=True)
 class Sample:
-    """Parameters of both versions by name, and a state."""
+    """A state: parameters of both versions by name, and X, V, A, q of both."""
 
     before: dict[str, Any]
     after: dict[str, Any]
-    vectors: dict[str, Any]
+    vectors: tuple[dict[str, Any], dict[str, Any]]
 
 
 class DerivationComparer:
-    """Compares two derivations at common samples."""
+    """Compares two derivations at common samples.
+
+    Equations are matched through the alignment of legs and joints. Those of the same text
+    say the same; others are judged by their values, given those before of all they use.
+    """
 
     def __init__(
-        self, before: Derivation, after: Derivation, samples: Sequence[Sample], tolerance: float
+        self,
+        before: Derivation,
+        after: Derivation,
+        samples: Sequence[Sample],
+        tolerance: float,
+        alignment: Alignment,
     ) -> None:
         self.a, self.b = Structure(before), Structure(after)
         self.tolerance = tolerance
-        self.matched = {n: n for n in self._known(self.b) if self._comparable(n, n)}
-        self.before = [State(self.a, s.before, s.vectors) for s in samples]
-        self.after = [State(self.b, s.after, s.vectors) for s in samples]
+        self.names = Names(self.a, self.b, alignment)
+        known = (*self.b.givens, *self.b.equations)
+        self.matched = {
+            n: self.names.partner[n]
+            for n in known
+            if n in self.names.partner and self._comparable(self.names.partner[n], n)
+        }
+        self.before = [State(self.a, s.before, s.vectors[0]) for s in samples]
+        self.after = [State(self.b, s.after, s.vectors[1]) for s in samples]
         self.local = [
-            State(self.b, s.after, s.vectors, self._lender(old))
+            State(self.b, s.after, s.vectors[1], self._lender(old))
             for s, old in zip(samples, self.before, strict=True)
         ]
+        self.moved: set[str] = set()
 
     def compare(self) -> tuple[EquationDifference, ...]:
         """All equations: given quantities first, then in order of the derivation after."""
-        self._match_renamed()
+        if self.before:
+            self._match_renamed()
         found = [*self._givens(), *(self._equation(e) for e in self.b.derivation.equations())]
         gone = set(self.a.equations) - set(self.matched.values())
         for equation in self.a.derivation.equations():
             if equation.name in gone:
                 found.append(self._told(equation, Verdict.REMOVED, before=_formula(equation)))
-        return (*found, *self._bases(), *self._outputs())
+        return (*found, *self._bases(), *(self._outputs() if self.before else ()))
 
     # ---- who is who -------------------------------------------------------------------
 
-    @staticmethod
-    def _known(s: Structure) -> list[str]:
-        return [*s.givens, *s.equations]
-
     def _common_legs(self, before: str, after: str) -> tuple[int | None, ...]:
-        legs = set(self.a.legs_of(before))
-        return tuple(leg for leg in self.b.legs_of(after) if leg in legs)
+        """Legs after that have the quantity in both versions; (None,) of the platform's."""
+        if (before in self.a.leg_type) != (after in self.b.leg_type):
+            return ()
+        old = set(self.a.legs_of(before))
+        legs = self.names.legs
+        return tuple(k for k in self.b.legs_of(after) if k is None or legs.get(k) in old)
+
+    def _old(self, leg: int | None) -> int | None:
+        return None if leg is None else self.names.legs[leg]
 
     def _comparable(self, before: str, after: str) -> bool:
         """Whether both exist, of one kind, with legs in common."""
@@ -73,24 +96,30 @@ class DerivationComparer:
     def _lender(self, old: State) -> Any:
         def borrow(name: str, leg: int | None) -> Any:
             partner = self.matched.get(name)
-            if partner is None or leg not in self.a.legs_of(partner):
+            if partner is None or leg not in self._common_legs(partner, name):
                 return None
-            return old.value(partner, leg)
+            return old.value(partner, self._old(leg))
 
         return borrow
 
     def _match_renamed(self) -> None:
-        """Match what has a new name by value: in order, each with the first that agrees."""
+        """Match what has a new name by law and value: in order, each with the first that agrees."""
         taken = set(self.matched.values())
-        free = [n for n in self._known(self.a) if n not in taken]
-        for name in self._known(self.b):
+        free = [n for n in (*self.a.givens, *self.a.equations) if n not in taken]
+        for name in (*self.b.givens, *self.b.equations):
             if name in self.matched:
                 continue
             for candidate in free:
-                if self._comparable(candidate, name) and self._agree(candidate, name):
-                    self.matched[name] = candidate
+                if self._alike(candidate, name) and self._agree(candidate, name):
+                    self.matched[name] = self.names.partner[name] = candidate
                     free.remove(candidate)
                     break
+
+    def _alike(self, before: str, after: str) -> bool:
+        if not self._comparable(before, after):
+            return False
+        old, new = self.a.equations.get(before), self.b.equations.get(after)
+        return old is None or new is None or old.law == new.law
 
     def _agree(self, before: str, after: str) -> bool:
         old, new, legs = self._values(before, after)
@@ -106,7 +135,7 @@ class DerivationComparer:
         old, new, legs = [], [], []
         for state, local in zip(self.before, self.local, strict=True):
             for leg in self._common_legs(before, after):
-                old.append(state.value(before, leg))
+                old.append(state.value(before, self._old(leg)))
                 new.append(local.own(after, leg))
                 legs.append(leg)
         return old, new, legs
@@ -129,14 +158,14 @@ class DerivationComparer:
         size = 0.0
         for used in names_in(equation.rhs) if equation else ():
             if used in self.matched:
-                leg = self.b.legs_of(used)[0]
+                leg = self._common_legs(self.matched[used], used)[0]
                 size = max([size, *(float(np.max(np.abs(s.value(used, leg)))) for s in self.local)])
         return max(size, size * size)
 
     def _follows(self, before: str, after: str) -> bool:
         """Whether the value differs once all differences before have their effect."""
         legs = self._common_legs(before, after)
-        old = [s.value(before, leg) for s in self.before for leg in legs]
+        old = [s.value(before, self._old(leg)) for s in self.before for leg in legs]
         new = [s.value(after, leg) for s in self.after for leg in legs]
         gap = gap_between(old, new, floor=self._size(after))
         return gap is not None and gap.size > self.tolerance
@@ -153,36 +182,57 @@ class DerivationComparer:
     def _equation(self, after: Equation) -> EquationDifference:
         partner = self.matched.get(after.name)
         if partner is None:
+            self.moved.add(after.name)
             return self._told(after, Verdict.ADDED, after=_formula(after))
         before = self.a.equations[partner]
-        gap, notes = self._worst(before, after)
-        same = _text(before) == _text(after)
+        same = _text(before) == self._renamed_text(before, after)
+        gap, notes = (None, []) if same or not self.before else self._worst(before, after)
         if gap is not None:
             verdict = Verdict.DIFFERENT
-        elif not same:
-            verdict = Verdict.EQUAL
-        else:
+        elif same:
             verdict = Verdict.IDENTICAL
-        if gap is None and self._follows(partner, after.name):
+        else:
+            verdict = Verdict.EQUAL if self.before else Verdict.CHANGED
+        used = names_in(after.rhs)
+        if gap is None and used & self.moved and self.before and self._follows(partner, after.name):
             verdict = Verdict.FOLLOWS
             notes += [] if same else ["also rewritten, with equal values"]
-        if before.name != after.name:
-            notes.append(f"renamed: {before.name} -> {after.name}")
-        if before.id != after.id:
-            notes.append(f"was {before.id}")
-        if (before.law, before.reference) != (after.law, after.reference):
-            notes.append(f"law: {before.law}, {before.reference} -> {after.law}, {after.reference}")
-        told = self._told(after, verdict, gap=gap, note="; ".join(notes))
-        if same and gap is None:
-            return told
-        return self._told(
-            after,
-            verdict,
-            before=_formula(before),
-            after=_formula(after),
-            gap=gap,
-            note="; ".join(notes),
+        if verdict in (Verdict.DIFFERENT, Verdict.FOLLOWS):
+            self.moved.add(after.name)
+        note = "; ".join((*notes, *self._notes(before, after)))
+        if same:
+            return self._told(after, verdict, note=note)
+        texts = {"before": _formula(before), "after": _formula(after)}
+        return self._told(after, verdict, gap=gap, note=note, **texts)
+
+    def _renamed_text(self, before: Equation, after: Equation) -> tuple[str, ...]:
+        """The text after, with the names before."""
+        name = self.names.expression
+        forms = "".join(f" = {plain(name(form))}" for form in after.forms)
+        return (
+            f"{before.name} = {plain(name(after.rhs))}{forms}",
+            str(
+                [(str(c.trouble), name(c.value), name(c.scale), c.power) for c in after.conditions]
+            ),
         )
+
+    def _notes(self, before: Equation, after: Equation) -> Iterator[str]:
+        """What else is not as it was."""
+        if before.name != after.name and not self._is_numbered(before.name, after.name):
+            yield f"renamed: {before.name} -> {after.name}"
+        if before.id != after.id:
+            yield f"was {before.id}"
+        if (before.law, before.reference) != (after.law, after.reference):
+            yield f"law: {before.law}, {before.reference} -> {after.law}, {after.reference}"
+        for leg_type in leg_sums(after.rhs):
+            legs = self.b.legs.get(leg_type, ())
+            old = self.a.legs.get(self.names.alignment.types.get(leg_type, ""), ())
+            if old and len(old) != len(legs):
+                yield f"a sum over {len(legs)} legs, was over {len(old)}"
+
+    def _is_numbered(self, before: str, after: str) -> bool:
+        """Whether a name is another only by the alignment of joints and leg types."""
+        return self.names.found.get(after) == before
 
     def _worst(self, before: Equation, after: Equation) -> tuple[Gap | None, list[str]]:
         """First gap among the definition, its other forms and its conditions."""
@@ -193,7 +243,7 @@ class DerivationComparer:
             gap = self._gap(before.name, after.name, form)
             if gap is not None:
                 return gap, [f"in the form {plain(form)}"]
-        if _conditions(before) != _conditions(after):
+        if _conditions(before) != self._renamed_text(before, after)[1]:
             return self._condition_gap(before, after)
         return None, []
 
@@ -204,7 +254,7 @@ class DerivationComparer:
         legs = self._common_legs(before.name, after.name)
         for old, new in zip(before.conditions, after.conditions, strict=True):
             for was, now in ((old.value, new.value), (old.scale, new.scale)):
-                a = [s.of(was, leg) for s in self.before for leg in legs]
+                a = [s.of(was, self._old(leg)) for s in self.before for leg in legs]
                 b = [s.of(now, leg) for s in self.local for leg in legs]
                 gap = gap_between(a, b)
                 if gap is not None and gap.size > self.tolerance:
@@ -214,42 +264,78 @@ class DerivationComparer:
     # ---- what is given, bases, outputs -----------------------------------------------------
 
     def _givens(self) -> Iterator[EquationDifference]:
+        """Given quantities whose components differ, and frames that stand otherwise."""
+        turned = self._turned_frames()
         for name, given in self.b.givens.items():
             partner = self.matched.get(name)
-            gap = self._gap(partner, name) if partner else None
-            if gap is not None:
-                old = self.a.givens[partner or name]
-                yield EquationDifference(
-                    "given",
-                    name,
-                    self.b.derivation.notation[name].meaning,
-                    self.b.leg_type.get(name, ""),
-                    Verdict.DIFFERENT,
-                    f"{old.components} in {old.frame}",
-                    f"{given.components} in {given.frame}",
-                    gap,
-                )
+            if partner is None:
+                self.moved.add(name)
+                continue
+            old = self.a.givens[partner]
+            chain = self._chain(given.frame)
+            texts = _given(old), self.names.as_before(_components(given.components))
+            same_frame = self.names.partner.get(given.frame, given.frame) == old.frame
+            same = texts[0] == texts[1] and same_frame
+            if same and not chain & turned:
+                continue
+            gap = self._gap(partner, name) if self.before else None
+            if gap is None and (same or self.before):
+                continue
+            self.moved.add(name)
+            if same:
+                continue
+            yield EquationDifference(
+                "given",
+                name,
+                self.b.derivation.notation[name].meaning,
+                self.b.leg_type.get(name, ""),
+                Verdict.DIFFERENT if gap is not None else Verdict.CHANGED,
+                f"{_components(old.components)} in {old.frame}",
+                f"{_components(given.components)} in {given.frame}",
+                gap,
+            )
+
+    def _chain(self, frame: str) -> set[str]:
+        found = set()
+        name: str | None = frame or None
+        while name is not None:
+            found.add(name)
+            name = self.b.frames[name].parent
+        return found
+
+    def _turned_frames(self) -> set[str]:
+        """Frames after whose text is another, or that have no counterpart."""
+        found = set()
+        for name, frame in self.b.frames.items():
+            old = self.a.frames.get(self.names.partner.get(name, name))
+            if old is None or _frame(old) != self.names.as_before(_frame(frame)):
+                found.add(name)
+        return found
 
     def _bases(self) -> Iterator[EquationDifference]:
-        old, new = ({x.id: str(x) for x in s.derivation.bases} for s in (self.a, self.b))
-        for id_ in old.keys() & new.keys():
-            if old[id_] != new[id_]:
+        old = {x.id: str(x) for x in self.a.derivation.bases}
+        for x in self.b.derivation.bases:
+            partner = self.names.partner.get(x.id, x.id)
+            if partner in old and old[partner] != self.names.as_before(str(x)):
                 yield EquationDifference(
-                    id_,
+                    x.id,
                     "reciprocal basis",
                     "how it is solved",
-                    id_,
+                    x.id,
                     Verdict.CHANGED,
-                    old[id_],
-                    new[id_],
-                    note="data of the lowering; values are compared by block",
+                    old[partner],
+                    str(x),
+                    note="data of the lowering; values are compared by function",
                 )
 
     def _outputs(self) -> Iterator[EquationDifference]:
         """Where quantities stand in the arrays that the code returns."""
+        legs = {k: k for k in self.a.type_of_leg}
+        if self.names.legs != legs or legs.keys() != self.b.type_of_leg.keys():
+            return  # the places of legs that are new or gone are not those before
         old, new = (_by_array(s.derivation) for s in (self.a, self.b))
         for array in sorted(old.keys() & new.keys()):
-            if str(old[array]) == str(new[array]):
+            if str(old[array]) == self.names.as_before(str(new[array])):
                 continue
             a = [_assembled(s, old[array]) for s in self.before]
             b = [_assembled(s, new[array]) for s in self.local]
@@ -275,11 +361,31 @@ def _formula(equation: Equation) -> str:
 
 
 def _conditions(equation: Equation) -> str:
-    return str([(c.trouble, c.value, c.scale, c.power) for c in equation.conditions])
+    return str([(str(c.trouble), c.value, c.scale, c.power) for c in equation.conditions])
 
 
 def _text(equation: Equation) -> tuple[str, ...]:
     return (_formula(equation), _conditions(equation))
+
+
+def _components(components: Sequence[Any]) -> str:
+    return f"({', '.join(map(str, components))})"
+
+
+def _given(given: Given) -> str:
+    return _components(given.components)
+
+
+def _frame(frame: Frame) -> str:
+    return str((frame.rotation, frame.axes, frame.rows, frame.angle))
+
+
+def leg_sums(expr: Any) -> list[str]:
+    """The leg types that an expression sums over, in order."""
+    if isinstance(expr, LegSum | VectorLegSum | TensorLegSum):
+        return [str(expr.args[1])]
+    found = [t for arg in getattr(expr, "args", ()) for t in leg_sums(arg)]
+    return list(dict.fromkeys(found))
 
 
 def _by_array(derivation: Derivation) -> dict[str, list[Output]]:

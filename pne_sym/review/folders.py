@@ -40,8 +40,12 @@ Folder = dict[str, Entry]
 """Path below the folder, with / -> what stands there; sorted."""
 
 
-def read_folder(folder: Path) -> Folder:
+def read_folder(folder: Path, most: int = MOST_FILES) -> Folder:
     """Every file below a folder on disk.
+
+    Args:
+        folder: where.
+        most: so many files at most.
 
     Raises:
         InputError: a file cannot be read, or there is more than the limits allow.
@@ -52,15 +56,15 @@ def read_folder(folder: Path) -> Folder:
         for name, path in _walk(folder, "", 0):
             found[name] = _read(path)
             size += len(found[name].content)
-            _check(str(folder), len(found), size)
+            _check(str(folder), len(found), size, most)
     except OSError as error:
         raise InputError(f"cannot read {error.filename or folder}: {error.strerror}") from error
     return dict(sorted(found.items()))
 
 
-def _check(label: str, count: int, size: int) -> None:
-    if count > MOST_FILES:
-        raise InputError(f"{label[:100]} has more than {MOST_FILES} files")
+def _check(label: str, count: int, size: int, most: int) -> None:
+    if count > most:
+        raise InputError(f"{label[:100]} has more than {most} files")
     if size > LARGEST_FOLDER:
         raise InputError(f"{label[:100]} is larger than {LARGEST_FOLDER} bytes")
 
@@ -96,17 +100,17 @@ def _read(path: Path) -> Entry:
 _KINDS = {"100644": "file", "100755": "file", "120000": "link"}
 
 
-def read_tree(label: str, tree: str) -> Folder:
+def read_tree(label: str, tree: str, most: int = MOST_FILES) -> Folder:
     """Every file of a tree in git.
 
     Args:
         label: what the user called it.
         tree: REVISION:PATH of a folder.
+        most: so many files at most.
 
     Raises:
         InputError: git cannot read it, or there is more than the limits allow.
     """
-    found: Folder = {}
     listed, size = [], 0
     for line in git(label, "ls-tree", "-r", "-l", "-z", "--full-tree", tree).split(b"\0")[:-1]:
         about, _, name = line.partition(b"\t")
@@ -119,15 +123,34 @@ def read_tree(label: str, tree: str) -> Folder:
             raise InputError(f"{label[:100]} is nested more than {DEEPEST} levels deep")
         size += bytes_
         listed.append((path, _KINDS.get(mode, "other"), digest))
-        _check(label, len(listed), size)
-    for path, kind, digest in sorted(listed):
-        content = b"" if kind == "other" else git(label, "cat-file", "blob", digest)
-        found[path] = Entry(kind, content)
+        _check(label, len(listed), size, most)
+    contents = _blobs(label, [digest for _, kind, digest in listed if kind != "other"])
+    return {
+        path: Entry(kind, contents.get(digest, b"") if kind != "other" else b"")
+        for path, kind, digest in sorted(listed)
+    }
+
+
+def _blobs(label: str, digests: list[str]) -> dict[str, bytes]:
+    """Contents of files in git by their digests, in one process."""
+    asked = "".join(f"{digest}\n" for digest in digests).encode()
+    said = git(label, "cat-file", "--batch", given=asked) if digests else b""
+    found, place = {}, 0
+    for digest in digests:
+        end = said.index(b"\n", place)
+        size = int(said[place:end].split()[2])
+        found[digest] = said[end + 1 : end + 1 + size]
+        place = end + 2 + size
     return found
 
 
-def git(label: str, *arguments: str) -> bytes:
+def git(label: str, *arguments: str, given: bytes | None = None) -> bytes:
     """Output of a git command that only reads.
+
+    Args:
+        label: what the user called what is asked for.
+        arguments: of git.
+        given: its standard input.
 
     Raises:
         InputError: it fails; the message has git's reason.
@@ -135,7 +158,7 @@ def git(label: str, *arguments: str) -> bytes:
     try:
         done = subprocess.run(  # noqa: S603
             ["git", *arguments],  # noqa: S607 - the user's git
-            stdin=subprocess.DEVNULL,
+            input=given or b"",
             capture_output=True,
             timeout=_GIT_TIME,
             check=False,

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
+from pne_sym.review.alignment import Alignment
 from pne_sym.review.difference import Change, OperationChange
 from pne_sym.review.model import Model, paths_of
 
@@ -15,19 +16,24 @@ _PLAIN = ("space", "sizes", "joints", "actuators", "extra", "constraints", "home
 
 
 def interface_changes(
-    before: Model, after: Model, old: Mapping[str, Any], new: Mapping[str, Any]
+    before: Model,
+    after: Model,
+    defaults: Sequence[Mapping[str, Any]],
+    alignment: Alignment,
 ) -> Iterator[Change]:
     """All changes of the interface.
 
     Args:
         before: a version of the model.
         after: another.
-        old: its defaults, by path of the full form.
-        new: those of the other.
+        defaults: of both by the paths of the full form before; none where they are not known.
+        alignment: of legs and joints.
     """
-    yield from _parameters(before, after)
-    yield from _defaults(old, new)
-    yield from _leg_types(before.manifest, after.manifest)
+    yield from _parameters(before, after, alignment)
+    if defaults:
+        yield from _defaults(*defaults)
+    yield from _legs(before, after, alignment)
+    yield from _leg_types(before.manifest, after.manifest, alignment)
     for name in ("X", "V", "wrench"):
         a, b = (m.manifest["coordinates"][name] for m in (before, after))
         yield from _changed(f"coordinates {name}", ", ".join(a), ", ".join(b))
@@ -42,11 +48,11 @@ def _changed(what: str, before: str, after: str) -> Iterator[Change]:
         yield Change("changed", what, before, after)
 
 
-def _parameters(before: Model, after: Model) -> Iterator[Change]:
+def _parameters(before: Model, after: Model, alignment: Alignment) -> Iterator[Change]:
     """Parameters added, removed, renamed: the same where they stand at the same paths."""
     free = list(before.parameters)
     for parameter in after.parameters:
-        partner = _partner(parameter, free)
+        partner = _partner(parameter, free, alignment)
         if partner is None:
             yield Change("added", f"parameter {parameter['name']}", after=_described(parameter))
             continue
@@ -79,9 +85,11 @@ def _signature(function: dict[str, Any]) -> str:
     return f"{sides[0]} -> {sides[1]}"
 
 
-def _partner(parameter: dict[str, Any], among: list[dict[str, Any]]) -> dict[str, Any] | None:
-    paths = set(paths_of(parameter))
-    shared = [p for p in among if p["path"] == parameter["path"] and paths & set(paths_of(p))]
+def _partner(
+    parameter: dict[str, Any], among: list[dict[str, Any]], alignment: Alignment
+) -> dict[str, Any] | None:
+    paths = {alignment.canonical(path) for path in paths_of(parameter)}
+    shared = [p for p in among if paths & set(paths_of(p))]
     named = [p for p in shared if p["name"] == parameter["name"]]
     return next(iter(named or shared), None)
 
@@ -102,14 +110,33 @@ def _text(value: Any) -> str:
     return str(np.asarray(value).tolist())
 
 
-def _leg_types(before: dict[str, Any], after: dict[str, Any]) -> Iterator[Change]:
+def _legs(before: Model, after: Model, alignment: Alignment) -> Iterator[Change]:
+    """Legs that stand at another place, or have no counterpart."""
+    counts = [
+        1 + max((leg for t in m.manifest["leg_types"] for leg in t["legs"]), default=-1)
+        for m in (before, after)
+    ]
+    old = {k: str(k + 1) for k in range(counts[0])}
+    now = [old.get(alignment.legs.get(k, -1), "new") for k in range(counts[1])]
+    yield from _changed("legs", ", ".join(old.values()), ", ".join(now))
+
+
+def _leg_types(
+    before: dict[str, Any], after: dict[str, Any], alignment: Alignment
+) -> Iterator[Change]:
+    """Leg types, matched by their legs."""
     old, new = ({t["name"]: t for t in m["leg_types"]} for m in (before, after))
+    taken = set()
     for name, info in new.items():
-        if name not in old:
+        partner = alignment.types.get(name)
+        if partner is None or partner in taken:
             yield Change("added", f"leg type {name}", after=_leg_type(info))
-        else:
-            yield from _changed(f"leg type {name}", _leg_type(old[name]), _leg_type(info))
-    for name in (n for n in old if n not in new):
+            continue
+        taken.add(partner)
+        if partner != name:
+            yield Change("renamed", "leg type", partner, name)
+        yield from _changed(f"leg type {name}", _leg_type(old[partner]), _leg_type(info))
+    for name in (n for n in old if n not in taken):
         yield Change("removed", f"leg type {name}", before=_leg_type(old[name]))
 
 

@@ -37,7 +37,7 @@ class Model:
         label: what the user called it.
         name: of the model; of a folder what its files are called by.
         manifest: the manifest, parsed and checked.
-        source: text of the NumPy module.
+        source: text of the NumPy module; of our own text it is printed when it is needed.
         bundle: derivation and program, where this pne-gen has derived it: from a
             specification, or from that in the manifest of a folder which is what this
             pne-gen prints.
@@ -56,6 +56,11 @@ class Model:
     folder: Folder | None = field(default=None, repr=False)
     deviations: tuple[Deviation, ...] = ()
     targets: tuple[str, ...] = field(default_factory=registry.default)
+
+    @cached_property
+    def _printed(self) -> dict[str, dict[str, bytes]]:
+        """Our own text by target, printed once."""
+        return {}
 
     @property
     def parameters(self) -> list[dict[str, Any]]:
@@ -79,7 +84,10 @@ class Model:
         if self.bundle is None:
             owner = registry.target(name)
             return {p: text for p, text in self._of_folder.items() if owner.owns(self.name, p)}
-        return {p: text.encode() for p, text in _texts(self.bundle, name).items()}
+        if name not in self._printed:
+            texts = _texts(self.bundle, name)
+            self._printed[name] = {p: text.encode() for p, text in texts.items()}
+        return self._printed[name]
 
     def has_generated(self, path: str) -> bool:
         """Whether a file is there and of a generation: a user's is not."""
@@ -94,7 +102,8 @@ class Model:
         """The NumPy package that is run; of a folder all its files."""
         if self.bundle is None:
             return self._of_folder
-        return self.of_target("numpy") | {f"{self.name}.py": self.source.encode()}
+        own = {f"{self.name}.py": self.source.encode()} if self.source else {}
+        return self.of_target("numpy") | own
 
     @property
     def c(self) -> dict[str, bytes]:
@@ -133,9 +142,8 @@ def from_manipulator(label: str, manipulator: Manipulator) -> Model:
 
 def from_bundle(label: str, bundle: Bundle) -> Model:
     """A compiled manipulator as a version of a model."""
-    texts = {p: t for n in ("manifest", "numpy") for p, t in _texts(bundle, n).items()}
-    manifest, source = texts[f"{bundle.name}.json"], texts[f"{bundle.name}.py"]
-    return Model(label, bundle.name, json.loads(manifest), source, bundle=bundle)
+    manifest = _texts(bundle, "manifest")[f"{bundle.name}.json"]
+    return Model(label, bundle.name, json.loads(manifest), "", bundle=bundle)
 
 
 def from_folder(label: str, manifest: dict[str, Any], folder: Folder) -> Model:

@@ -47,13 +47,16 @@ def _run(model: Any, each: dict[str, Any]) -> dict[str, Any]:
     """The states used, made to meet the constraints where asked, and all functions there."""
     p = None if each["parameters"] is None else model.Parameters(**each["parameters"])
     values = {n: _unpacked(v) for n, v in each["values"].items()}
+    only, made = each.get("only"), {}
     if each["consistent"]:
-        if hasattr(model, "Hk"):
+        if hasattr(model, "Hk") and each["consistent"] != "q":
             _onto_the_manifold(model, values, p)
         values["q"] = model.inverse_kinematics(values["X"], p=p)
-        return {"values": {n: _packed(v) for n, v in values.items()}, "calls": []}
+        made = {n: _packed(v) for n, v in values.items()}
+        if only is None:
+            return {"values": made, "calls": []}
     shared = set(each["shared"])
-    return {"values": {}, "calls": [*_calls(model, values, shared, p)]}
+    return {"values": made, "calls": [*_calls(model, values, shared, p, only)]}
 
 
 def _constants(model: Any) -> Iterator[tuple[str, Any]]:
@@ -67,9 +70,13 @@ def _constants(model: Any) -> Iterator[tuple[str, Any]]:
                 yield name, {"text": repr(member)[:_LONGEST]}
 
 
-def _calls(model: Any, values: dict[str, Any], shared: set[str], p: Any) -> Iterator[Any]:
-    """Every call of every exported function, and what it returns."""
+def _calls(
+    model: Any, values: dict[str, Any], shared: set[str], p: Any, only: list[str] | None
+) -> Iterator[Any]:
+    """Every call of every exported function, or of some without options, and what it returns."""
     for name in model.__all__:
+        if only is not None and name not in only:
+            continue
         function = getattr(model, name)
         if inspect.isclass(function) or not callable(function):
             continue
@@ -79,7 +86,7 @@ def _calls(model: Any, values: dict[str, Any], shared: set[str], p: Any) -> Iter
             if parameter.name != _PARAMETERS:
                 free = parameter.default is not parameter.empty
                 (offered if free else needed).append(parameter.name)
-        for given in _choices(offered):
+        for given in _choices(offered) if only is None else [[]]:
             yield {"function": name, "given": given, **_call(function, [*needed, *given], values,
                                                              shared, p)}  # fmt: skip
 

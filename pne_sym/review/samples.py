@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -16,15 +16,20 @@ Array = NDArray[np.float64]
 def random_parameters(defaults: Mapping[str, Array], rng: np.random.Generator) -> dict[str, Array]:
     """Values near the defaults that keep what the structure demands.
 
+    What is zero without being so by structure is moved too: that a default happens to be
+    zero must not hide what depends on it.
+
     Args:
         defaults: by path of the full form.
         rng: where the random numbers come from.
     """
     planar = all(abs(v[2, 2] - 1.0) < 1e-9 for p, v in defaults.items() if p.endswith("base_frame"))
-    return {path: _near(path, value, planar, rng) for path, value in defaults.items()}
+    size = length_of(defaults)
+    return {path: _near(path, value, (planar, size), rng) for path, value in defaults.items()}
 
 
-def _near(path: str, value: Array, planar: bool, rng: np.random.Generator) -> Array:
+def _near(path: str, value: Array, of: tuple[bool, float], rng: np.random.Generator) -> Array:
+    planar, length = of
     if path.endswith("frame"):
         return _turn(rng.normal(0.0, 0.05, 3) * ((0, 0, 1) if planar else 1)) @ value
     if "axis" in path.rpartition(".")[2] or path.endswith("rotation"):
@@ -32,10 +37,12 @@ def _near(path: str, value: Array, planar: bool, rng: np.random.Generator) -> Ar
     if path.endswith("inertia"):  # congruent, so that no moment of inertia becomes negative
         skewed = np.eye(3) + rng.normal(0.0, 0.03, (3, 3))
         moved = rng.uniform(0.8, 1.25) * (skewed @ value @ skewed.T)
+        if not value.any():
+            moved = 0.01 * length * length * (skewed @ skewed.T)
         return np.asarray(0.5 * (moved + moved.T), dtype=np.float64)
     if value.ndim == 0:
-        return np.asarray(value * rng.uniform(0.8, 1.25), dtype=np.float64)
-    size = float(np.linalg.norm(value))
+        return np.asarray((value or 0.1) * rng.uniform(0.8, 1.25), dtype=np.float64)
+    size = float(np.linalg.norm(value)) or length
     moved = value * rng.uniform(0.97, 1.03, value.shape) + 0.02 * size * rng.normal(
         size=value.shape
     )
@@ -104,11 +111,18 @@ def actuated(manifest: Mapping[str, Any], q: Array) -> Array:
     return q[:, [manifest["joints"].index(joint) for joint in manifest["actuators"]]]
 
 
-def resized(value: Array, size: int) -> Array:
-    """As many entries as another version has: cut, or the last one repeated."""
-    if not value.shape[-1]:
-        return np.ones((*value.shape[:-1], size))
-    return value[..., [min(k, value.shape[-1] - 1) for k in range(size)]]
+def carried(value: Array, places: Sequence[int | None], fill: Array) -> Array:
+    """Entries as another version orders them.
+
+    Args:
+        value: (..., n).
+        places: per entry of the other version its position in `value`, or None.
+        fill: (m,) what the entries have that are not in `value`.
+    """
+    found = np.empty((*value.shape[:-1], len(places)))
+    for k, place in enumerate(places):
+        found[..., k] = fill[k] if place is None else value[..., place]
+    return found
 
 
 def length_of(defaults: Mapping[str, Array]) -> float:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pne_sym.review.alignment import Alignment
 from pne_sym.review.c_driver import Array, CAnswer, c_calls
+from pne_sym.review.correspondence import Correspondence, same_platform
 from pne_sym.review.equations import Sample
 from pne_sym.review.execution import (
     Answer,
@@ -19,14 +21,14 @@ from pne_sym.review.execution import (
     execute_c,
     packed,
 )
-from pne_sym.review.model import Model, by_name, by_path
+from pne_sym.review.model import Model, by_name, by_path, paths_of
 from pne_sym.review.samples import (
     SHARED,
     actuated,
+    carried,
     length_of,
     random_parameters,
     random_values,
-    resized,
 )
 from pne_sym.review.sandbox import Isolation
 
@@ -34,11 +36,8 @@ Rows = NDArray[np.intp]
 PARAMETER_SETS = 4
 """Random ones; one of the defaults is added, where they are the same in both versions."""
 STATES = 8
-_PER_SET = 2
-"""States of each parameter set at which every equation is evaluated."""
-_SIZED = {
-    "tau": "NU", "wrench": "NW", "weights": "NU", "q0": "NJ", "q_actuated": "NU",
-}  # fmt: skip
+_PER_SET = 1
+"""States of each parameter set at which equations are evaluated."""
 
 
 @dataclass(frozen=True)
@@ -54,53 +53,110 @@ class Runs:
 
     Attributes:
         answers: of the NumPy modules, before and after.
-        defaults: of the parameters by path, before and after.
+        defaults: of the parameters by path of the version before, before and after.
         kept: per set, the states that at least one version allows.
         states: how many these are.
-        comparable: whether X and V mean the same in both.
+        comparable: whether the platform's coordinates mean the same in both.
+        common: whether parameters were the same in both; else each is near its own defaults.
     """
 
-    def __init__(self, before: Model, after: Model, seed: int) -> None:
+    def __init__(self, before: Model, after: Model, seed: int, alignment: Alignment) -> None:
         self.models = (before, after)
-        sizes = [m.manifest["sizes"] for m in self.models]
-        self.comparable = all(sizes[0][k] == sizes[1][k] for k in ("NQ", "NV"))
-        self.answers = _both(_asked(m, []) for m in self.models)
-        self.defaults = [_by_path(m, a) for m, a in zip(self.models, self.answers, strict=True)]
+        self.alignment = alignment
+        self.comparable = same_platform(before.manifest, after.manifest)
+        self.answers = (_constants_of(before), _constants_of(after))
+        own = [_by_path(m, a) for m, a in zip(self.models, self.answers, strict=True)]
+        self.defaults = [own[0], {alignment.canonical(p): v for p, v in own[1].items()}]
         self.sets: tuple[list[Set], list[Set]] = ([], [])
         self.kept: list[Rows] = []
-        if self.comparable:
-            try:
-                self._draw(np.random.default_rng(seed))
-            except (ValueError, IndexError) as error:  # also of a stranger's manifest
-                if isinstance(error, ExecutionError):
-                    raise
-                labels = f"{before.label}, {after.label}"
-                raise ExecutionError(f"{labels}: parameters of shapes that do not fit") from error
-            self.answers = _both(
-                _asked(m, [_request(s) for s in sets])
-                for m, sets in zip(self.models, self.sets, strict=True)
-            )
-            self.kept = [self._possible(k) for k in range(len(self.sets[0]))]
+        self.common = True
+        if not self.comparable:
+            return
+        try:
+            self._run(np.random.default_rng(seed))
+            if not self.states and not _same(*self.defaults):
+                self.common, self.sets = False, ([], [])
+                self._run(np.random.default_rng(seed))
+        except (ValueError, IndexError) as error:  # also of a stranger's manifest
+            if isinstance(error, ExecutionError):
+                raise
+            labels = f"{before.label}, {after.label}"
+            raise ExecutionError(f"{labels}: parameters of shapes that do not fit") from error
 
     @property
     def states(self) -> int:
         """How many states are compared."""
         return sum(len(kept) for kept in self.kept)
 
-    def _draw(self, rng: np.random.Generator) -> None:
-        """Parameters and states of all sets, made to meet the constraints by one version."""
+    def _run(self, rng: np.random.Generator) -> None:
+        self._draw(rng)
+        self.answers = _both(
+            _asked(m, [_request(s) for s in sets])
+            for m, sets in zip(self.models, self.sets, strict=True)
+        )
+        self.kept = [self._possible(k) for k in range(len(self.sets[0]))]
+
+    # ---- parameters ---------------------------------------------------------------------
+
+    def _parameters(self, rng: np.random.Generator) -> tuple[list[Any], list[Any]]:
+        """Random ones, the same for what is the same; then the defaults, where they are equal."""
         old, new = self.defaults
-        leader = int(self.models[0].bundle is None and self.models[1].bundle is not None)
-        model, size = self.models[leader], length_of({**new, **old})
-        parameters: list[list[Any]] = [[], []]
+        found: tuple[list[Any], list[Any]] = ([], [])
         for _ in range(PARAMETER_SETS):
             drawn = random_parameters({**new, **old}, rng)
-            freed = {**drawn, **self._structural(drawn)}
-            for side, version, values in zip(parameters, self.models, (drawn, freed), strict=True):
-                side.append(by_name(version, values))
+            found[0].append(by_name(self.models[0], drawn))
+            found[1].append(self._after(drawn if self.common else {}, rng))
         if _same(old, new):
-            for side in parameters:
+            for side in found:
                 side.append(None)
+        return found
+
+    def _after(self, drawn: dict[str, Any], rng: np.random.Generator) -> dict[str, Any]:
+        """Parameters of the version after by their names."""
+        own = random_parameters(self.defaults[1], rng)
+        values = {}
+        for p in self.models[1].parameters:
+            for path in paths_of(p):
+                key = self.alignment.canonical(path)
+                fits = key in drawn and np.shape(drawn[key]) == np.shape(own[key])
+                values[path] = self._freed(key, drawn[key]) if fits else own[key]
+        return by_name(self.models[1], values)
+
+    def _freed(self, path: str, drawn: Array) -> Array:
+        """Entries that are zero by structure before have the default after, where they are free."""
+        if self._axis_moved(path):
+            return self.defaults[1][path]
+        zeros = self._zeros.get(path, ())
+        if not zeros:
+            return drawn
+        value = np.array(drawn, dtype=float)
+        value.reshape(-1)[list(zeros)] = self.defaults[1][path].reshape(-1)[list(zeros)]
+        return value
+
+    def _axis_moved(self, path: str) -> bool:
+        """Whether a live axis stands otherwise: what it may be, its relations to others say."""
+        key = path.rpartition(".")[2]
+        old, new = (d.get(path) for d in self.defaults)
+        if "axis" not in key or old is None or new is None:
+            return False
+        return not np.array_equal(old, new)
+
+    @property
+    def _zeros(self) -> dict[str, tuple[int, ...]]:
+        """Entries that are zero by structure before, by path."""
+        return {
+            path: tuple(p.get("zero_by_structure", ()))
+            for p in self.models[0].parameters
+            for path in paths_of(p)
+        }
+
+    # ---- states -------------------------------------------------------------------------
+
+    def _draw(self, rng: np.random.Generator) -> None:
+        """Parameters and states of all sets, made to meet the constraints by one version."""
+        leader = int(self.models[0].bundle is None and self.models[1].bundle is not None)
+        model, size = self.models[leader], length_of({**self.defaults[1], **self.defaults[0]})
+        parameters = self._parameters(rng)
         drafts = [
             random_values(model.manifest, STATES, size, rng) for _ in range(len(parameters[0]))
         ]
@@ -109,10 +165,28 @@ class Runs:
             for p, v in zip(parameters[leader], drafts, strict=True)
         ]
         states = _asked(model, asked).states
-        for k, (draft, state) in enumerate(zip(drafts, states, strict=True)):
-            values = self._complete(model, draft, state, size, rng)
-            for sets, own, version in zip(self.sets, parameters, self.models, strict=True):
-                sets.append(Set(own[k], _fitted(version, values)))
+        led = [
+            Set(p, self._complete(model, draft, state, size, rng))
+            for p, draft, state in zip(parameters[leader], drafts, states, strict=True)
+        ]
+        self.sets[leader].extend(led)
+        self.sets[1 - leader].extend(self._followed(leader, led, parameters[1 - leader]))
+
+    def _followed(self, leader: int, led: list[Set], parameters: list[Any]) -> list[Set]:
+        """The states of the other version: its coordinates, joints and actuators in its order."""
+        one, other = self.models[leader], self.models[1 - leader]
+        own = Correspondence(one.manifest, other.manifest, self.alignment, backwards=leader == 1)
+        found = [
+            Set(p, {n: _fitted(own, n, v, other.manifest) for n, v in s.values.items()})
+            for p, s in zip(parameters, led, strict=True)
+        ]
+        if own.joints("joints") == list(range(one.manifest["sizes"]["NJ"])):
+            return found
+        asked = [_request(s, consistent="q") for s in found]
+        for s, made in zip(found, _asked(other, asked).states, strict=True):
+            s.values["q"] = made["q"]
+            s.values["q_actuated"] = actuated(other.manifest, made["q"])
+        return found
 
     def _complete(
         self,
@@ -135,15 +209,6 @@ class Runs:
             "q_actuated": actuated(model.manifest, state["q"]),
         }
 
-    def _structural(self, drawn: dict[str, Any]) -> dict[str, Any]:
-        """Entries that are zero before by structure, but free after, at their values after."""
-        free = {}
-        for path, value in self.defaults[1].items():
-            old = self.defaults[0].get(path)
-            if old is not None and np.shape(value) and np.any((old == 0.0) & (value != 0.0)):
-                free[path] = np.where((old == 0.0) & (value != 0.0), value, drawn[path])
-        return free
-
     def _possible(self, k: int) -> Rows:
         """The states of a set that at least one of the two versions allows."""
         allowed = np.zeros(STATES, dtype=bool)
@@ -164,14 +229,13 @@ class Runs:
                 for s in self.kept[k]
                 if all(np.isfinite(a.calls[k]["M", (), "batch"][0][s]).all() for a in self.answers)
             ]
-            found += [
-                Sample(
-                    old.parameters or {},
-                    new.parameters or {},
-                    {n: old.values[n][s] for n in ("X", "V", "A", "q")},
+            for s in both[:_PER_SET]:
+                vectors = [
+                    {n: side.values[n][s] for n in ("X", "V", "A", "q")} for side in (old, new)
+                ]
+                found.append(
+                    Sample(old.parameters or {}, new.parameters or {}, (vectors[0], vectors[1]))
                 )
-                for s in both[:_PER_SET]
-            ]
         return found
 
     def c_answers(self) -> tuple[tuple[CAnswer, CAnswer] | None, list[str]]:
@@ -199,6 +263,14 @@ def _both(answers: Iterable[Answer]) -> tuple[Answer, Answer]:
     return before, after
 
 
+def _constants_of(model: Model) -> Answer:
+    """Defaults and constants: of our own text they are known, else it is asked."""
+    if model.bundle is None:
+        return _asked(model, [])
+    fields = model.bundle.derivation.parameters.fields
+    return Answer({f.name: np.asarray(f.default, dtype=float) for f in fields})
+
+
 def _asked(model: Model, sets: Sequence[dict[str, Any]]) -> Answer:
     request = {"defaults": [p["name"] for p in model.parameters], "sets": list(sets)}
     return execute(model.label, model.name, model.python, request, _isolation(model))
@@ -209,7 +281,7 @@ def _isolation(model: Model) -> Isolation | None:
     return None if model.bundle is None else Isolation.NONE
 
 
-def _request(s: Set, *, consistent: bool = False) -> dict[str, Any]:
+def _request(s: Set, *, consistent: bool | str = False) -> dict[str, Any]:
     return {
         "parameters": s.parameters,
         "values": {n: packed(v) for n, v in s.values.items()},
@@ -229,10 +301,14 @@ def _same(old: dict[str, Array], new: dict[str, Array]) -> bool:
     return old.keys() == new.keys() and all(np.array_equal(old[p], new[p]) for p in old)
 
 
-def _fitted(model: Model, values: dict[str, Array]) -> dict[str, Array]:
-    """Values of as many entries as a version has."""
-    sizes = model.manifest["sizes"]
-    return {n: resized(v, sizes[_SIZED[n]]) if n in _SIZED else v for n, v in values.items()}
+def _fitted(own: Correspondence, name: str, value: Array, manifest: Mapping[str, Any]) -> Array:
+    """Values of an argument as a version orders its entries."""
+    places = own.of(name)
+    if places is None:
+        return value
+    home = np.array(manifest["home"]["X" if name in ("X", "X0") else "q"], dtype=float)
+    fill = home if name in ("X", "X0", "q", "q0") else np.ones(len(places))
+    return carried(value, places, fill)
 
 
 def _for_c(values: dict[str, Array]) -> dict[str, Array]:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from pne_sym.backends.c_public import c_functions
+from pne_sym.review.alignment import align
 from pne_sym.review.c_driver import c_calls
 from pne_sym.review.compare import compare
 from pne_sym.review.difference import Verdict
@@ -33,7 +34,8 @@ def model(name: str) -> Model:
 
 @cache
 def runs(name: str) -> Runs:
-    return Runs(model(name), model(name), 0)
+    manifest = model(name).manifest
+    return Runs(model(name), model(name), 0, align(manifest, manifest))
 
 
 @pytest.mark.parametrize("name", sampled(MODELS, 3))

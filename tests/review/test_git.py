@@ -1,4 +1,4 @@
-"""docs/code-review.md followed in a scratch repository: diff driver and workflow commands."""
+"""docs/code-review.md followed in a scratch repository: the diff driver."""
 
 from __future__ import annotations
 
@@ -16,7 +16,6 @@ from tests.sampling import sampled
 
 ROOT = Path(__file__).parents[2]
 GUIDE = (ROOT / "docs/code-review.md").read_text()
-WORKFLOW = next(re.finditer(r"```yaml\n(.*?)```", GUIDE, re.DOTALL)).group(1)
 
 
 def shell(command: str, folder: Path, **variables: str) -> subprocess.CompletedProcess[str]:
@@ -35,18 +34,6 @@ def shell(command: str, folder: Path, **variables: str) -> subprocess.CompletedP
         timeout=HANG,
         check=False,
     )
-
-
-def step(name: str) -> str:
-    """The commands of a step of the workflow."""
-    found = re.search(
-        rf"- name: {name}\n(?:        .*\n)*?        run: (.*\n(?:          .*\n)*)", WORKFLOW
-    )
-    assert found, name
-    lines = found.group(1).split("\n")
-    if lines[0] != "|":
-        return lines[0]
-    return "\n".join(line[10:] for line in lines[1:])
 
 
 @pytest.fixture
@@ -71,13 +58,13 @@ def test_the_diff_driver(recipe: str, repository: Path) -> None:
     done = shell("git --no-pager diff", repository)
     assert (done.returncode, done.stderr) == (0, "")
     if recipe == "command":
-        assert "changed: default of platform.mass\n-   12.0\n+   14.0\n" in done.stdout
+        assert "different: platform: mass 12 -> 14 kg (+16.7 %)" in done.stdout
+        assert "--- a/my_robot.toml\n+++ b/my_robot.toml\n" in done.stdout
         plain = shell("git --no-pager diff --no-ext-diff", repository).stdout
         assert "-mass = 12.0  # kg" in plain
         git(repository, "commit", "-q", "-a", "-m", "heavier")
-        assert (
-            "default of platform.mass" in shell("git --no-pager show --ext-diff", repository).stdout
-        )
+        shown = shell("git --no-pager show --ext-diff", repository).stdout
+        assert "platform: mass 12 -> 14 kg" in shown
     else:
         assert '-  "mass": 12.0,\n+  "mass": 14.0,' in done.stdout
 
@@ -89,43 +76,21 @@ def test_the_driver_lets_a_broken_file_pass(repository: Path) -> None:
     (repository / "my_robot.toml").write_text("name = ")
     done = shell("git --no-pager diff", repository)
     assert done.returncode == 0
-    assert "syntax error" in done.stderr
+    assert "b/my_robot.toml: syntax error" in done.stderr
 
 
-def test_the_workflows_own_commands(repository: Path) -> None:
-    base = {"BASE": "main"}
-    (repository / "robots").mkdir()
-    spec = (repository / "my_robot.toml").rename(repository / "robots/my_robot.toml")
-    assert pne_gen(spec, "--out", repository / "generated", real=True).returncode == 0
+def test_the_driver_tells_new_and_deleted_files(repository: Path) -> None:
+    command = re.search(r"^git config diff\.pne\.command .*$", GUIDE, re.MULTILINE)
+    assert command
+    shell(command.group(), repository)
+    spec = repository / "my_robot.toml"
+    spec.rename(repository / "other.toml")
     git(repository, "add", "-A")
-    git(repository, "commit", "-q", "-m", "a robot of its own")
-    assert shell(step("Check"), repository).returncode == 0
-    git(repository, "checkout", "-q", "-b", "change")
-    pne_gen("sixbar", "--out", repository / "generated", real=True)
-    module = repository / "generated/my_robot/my_robot.py"
-    module.write_text(module.read_text().replace("_TOLERANCE = 1", "_TOLERANCE = 2", 1))
-    checked = shell(step("Check"), repository)
-    assert checked.returncode == 1
-    assert "to mend it: pne-gen robots/my_robot.toml --out generated" in checked.stdout
-    done = shell(step("Diff"), repository, **base)
+    done = shell("git --no-pager diff --cached --no-renames", repository)
     assert (done.returncode, done.stderr) == (0, "")
-    comment = (repository / "comment.md").read_text()
-    assert "## my_robot\n### ⚠️ different: not all is compared" in comment
-    assert "my_robot.py: differs, line" in comment
-    assert "## planar_3rpr\n### ✅ equal: identical text" in comment
-    assert "## sixbar\nNew.\n" in comment
-
-
-def test_the_workflow_is_yaml_that_names_no_secret_but_its_token() -> None:
-    assert "pull_request_target" not in WORKFLOW
-    assert "--run" not in WORKFLOW
-    assert not re.search(r"install \.\s", WORKFLOW)
-    assert re.findall(r"\$\{\{ ([\w.]+) \}\}", WORKFLOW) == [
-        "github.base_ref",
-        "github.token",
-        "github.event.number",
-        "github.event.number",
-    ]
+    assert "--- a/my_robot.toml\n+++ no model\n\nmy_robot: deleted: " in done.stdout
+    assert "--- no model\n+++ b/other.toml\n\nother: new model: " in done.stdout
+    assert "/tmp" not in done.stdout
 
 
 def test_attributes_of_this_repository() -> None:

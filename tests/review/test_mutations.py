@@ -7,7 +7,10 @@ from dataclasses import replace
 import pytest
 import sympy as sp
 
+from pne_sym.backends.bundle import Bundle
+from pne_sym.review import diff_text
 from pne_sym.review.difference import Verdict
+from pne_sym.review.model import from_bundle
 from pne_sym.vector import Cross, Outer, VectorSymbol
 from pne_sym.vector import nodes as n
 from tests.models import bundle, catalogue
@@ -141,13 +144,21 @@ def test_other_structures(model: str, name: str) -> None:
 
 
 def test_a_mistake_outside_the_equations_is_told_as_such() -> None:
+    """The derivation is right, the program is not: its first statement that differs is told."""
     manipulator = catalogue("stewart")
-    before, right = version(manipulator), bundle(manipulator)
+    right = bundle(manipulator)
     wrong = compiled(manipulator, rewritten(right.derivation, {"U": with_rhs(lambda r: -r)}))
-    found = compare(before, replace(wrong, bundle=right))
+    assert wrong.bundle is not None
+    lowered = from_bundle("after", Bundle(manipulator, right.derivation, wrong.bundle.program))
+    found = compare(version(manipulator), lowered)
     assert not found.equal
     assert not found.origins
     assert any("outside them" in note for note in found.notes)
+    assert found.statement is not None
+    assert found.statement.equation == right.derivation.definition("U").id
+    assert diff_text.verdict(found).startswith(
+        f"different: the lowering, first at {found.statement.equation} (U"
+    )
 
 
 def test_a_cross_product_the_wrong_way_round() -> None:

@@ -1,0 +1,114 @@
+"""Models that are new or gone, and folders of models: one answer for all of them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from pne_sym.generation import InputError
+from pne_sym.review.markdown import Part
+from pne_sym.review.sources import Source, same_bytes
+
+
+@dataclass(frozen=True)
+class Options:
+    """How versions are compared; as `compare` has them."""
+
+    tolerance: float
+    run: bool
+    c: bool
+
+
+def compare_sources(before: Source, after: Source, options: Options) -> list[Part]:
+    """What is told of every model of two sources, of which one may be none.
+
+    A model that cannot be compared is told as such; the others are compared all the same.
+
+    Raises:
+        InputError: a folder of models is to be compared with a single one.
+    """
+    sides = []
+    for mine, other in ((before, after), (after, before)):
+        if mine.models is None and other.models is not None and not mine.is_none:
+            raise InputError(
+                f"{mine.label[:100]!r} is one model, {other.label[:100]!r} holds several"
+            )
+        single = {} if mine.is_none else {mine.name: mine}
+        sides.append(single if mine.models is None else dict(mine.models))
+    names = sorted(sides[0].keys() | sides[1].keys())
+    if before.is_none != after.is_none:
+        known = after if before.is_none else before
+        names = names if known.models is not None else [known.name]
+    return [_told(name, sides[0].get(name), sides[1].get(name), options) for name in names]
+
+
+def _told(name: str, before: Source | None, after: Source | None, options: Options) -> Part:
+    from pne_sym.backends.target import TargetError
+    from pne_sym.model.errors import SpecError, printable
+
+    if before is not None and after is not None and same_bytes(before, after):
+        return Part(name, "equal: identical text", is_equal=True)
+    try:
+        if before is not None and after is not None:
+            return _compared(name, before, after, options)
+        known = after if after is not None else before
+        assert known is not None
+        what = "new model" if before is None else "deleted"
+        return Part(name, f"{what}: {_described(known)}")
+    except (InputError, SpecError, TargetError) as error:
+        return Part(name, f"cannot be compared: {printable(str(error), 400)}")
+
+
+def _compared(name: str, before: Source, after: Source, options: Options) -> Part:
+    from pne_sym.review.compare import compare
+    from pne_sym.review.markdown import part_of
+    from pne_sym.review.versions import version_of
+
+    versions = version_of(before), version_of(after)
+    found = compare(*versions, tolerance=options.tolerance, run=options.run, c=options.c)
+    return part_of(name, found)
+
+
+def _described(source: Source) -> str:
+    """A model in one line."""
+    from pne_sym.review.versions import version_of
+
+    m = version_of(source).manifest
+    sizes, counted = m["sizes"], dict[str, int]()
+    for t in m["leg_types"]:
+        counted[t["architecture"]] = counted.get(t["architecture"], 0) + len(t["legs"])
+    legs = ", ".join(f"{n} {architecture}" for architecture, n in counted.items())
+    drives = f"{sizes['NV']} degrees of freedom, {sizes['NU']} actuators"
+    return f"{m['title']} ({m['space']}; legs: {legs}; {drives})"
+
+
+def as_text(before: Source, after: Source, parts: list[Part]) -> Iterator[str]:
+    """Lines of plain text: equal models together, then one after the other."""
+    yield f"--- {before.label}"
+    yield f"+++ {after.label}"
+    equal = [p.name for p in parts if p.is_equal]
+    if equal:
+        yield f"equal: {', '.join(equal)}"
+    for part in (p for p in parts if not p.is_equal):
+        yield ""
+        yield f"{part.name}: {part.headline}"
+        for section in part.sections:
+            yield ""
+            yield section.title
+            yield from section.lines
+
+
+def as_json(before: Source, after: Source, parts: list[Part]) -> str:
+    """Plain data as JSON."""
+    models: Mapping[str, Any] = {
+        p.name: {"equal": p.is_equal, "headline": p.headline} for p in parts
+    }
+    told = {
+        "before": before.label,
+        "after": after.label,
+        "equal": all(p.is_equal for p in parts),
+        "models": models,
+    }
+    return json.dumps(told, indent=1, ensure_ascii=False)

@@ -1,0 +1,205 @@
+"""What a change does to what engineers design by: required forces, inertia, condition of H.
+
+Each version is taken at its own defaults and its own home, and at states around it that are
+the same for both where their platforms have the same coordinates.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from pne_sym.review.alignment import Alignment
+from pne_sym.review.c_driver import Array
+from pne_sym.review.correspondence import Correspondence, same_platform
+from pne_sym.review.difference import Effect
+from pne_sym.review.execution import Answer, ExecutionError, execute, packed
+from pne_sym.review.model import Model
+from pne_sym.review.samples import carried, random_values
+from pne_sym.review.sandbox import Isolation
+
+STATES = 8
+_ASKED = ("M", "H", "inverse_dynamics", "condition")
+_HOME, _AROUND = "at home, at rest", f"at {STATES} states around home"
+_SMALL = 1e-9
+
+
+@dataclass(frozen=True)
+class _Facts:
+    """Of a version, per state; the first is home at rest.
+
+    Attributes:
+        forces: (states, actuators) required by inverse dynamics.
+        least: (states,) eigenvalue of M.
+        condition: (states,) of H, its moment rows over a length.
+    """
+
+    forces: Array
+    least: Array
+    condition: Array
+
+
+def effects(
+    before: Model, after: Model, alignment: Alignment, *, size: float, seed: int = 0
+) -> tuple[Effect, ...]:
+    """What differs, and what has no counterpart.
+
+    Args:
+        before: a version that may be run.
+        after: likewise.
+        alignment: of their legs and joints.
+        size: a length of the mechanism, m.
+        seed: of the states around home.
+
+    Raises:
+        ExecutionError: a version cannot be run.
+    """
+    common = same_platform(before.manifest, after.manifest)
+    states = [_states(before, size, seed)]
+    if common:
+        states.append(_carried(states[0], before, after, alignment))
+    else:
+        states.append(_states(after, size, seed))
+    facts = [_facts(m, s) for m, s in zip((before, after), states, strict=True)]
+    own = Correspondence(after.manifest, before.manifest, alignment, backwards=True)
+    places = own.joints("actuators")
+    return tuple(_told(facts[0], facts[1], (before, after), places, common=common))
+
+
+def _states(model: Model, size: float, seed: int) -> dict[str, Array]:
+    """Home at rest, then states around it."""
+    drawn = random_values(model.manifest, STATES + 1, size, np.random.default_rng(seed))
+    found = {n: drawn[n].copy() for n in ("X", "V", "A")}
+    found["X"][0] = model.manifest["home"]["X"]
+    found["V"][0] = found["A"][0] = 0.0
+    return found
+
+
+def _carried(
+    states: Mapping[str, Array], before: Model, after: Model, alignment: Alignment
+) -> dict[str, Array]:
+    """The same states as the other version orders them; home is its own."""
+    own = Correspondence(before.manifest, after.manifest, alignment)
+    home = np.array(after.manifest["home"]["X"], dtype=float)
+    found = {"X": carried(states["X"], own.coordinates("X"), home)}
+    for name in ("V", "A"):
+        places = own.coordinates("V")
+        found[name] = carried(states[name], places, np.zeros(len(places)))
+    found["X"][0] = home
+    return found
+
+
+def _facts(model: Model, states: Mapping[str, Array]) -> _Facts:
+    asked = {
+        "parameters": None,
+        "values": {n: packed(v) for n, v in states.items()},
+        "shared": [],
+        "consistent": True,
+        "only": list(_ASKED),
+    }
+    request = {"defaults": [], "sets": [asked]}
+    isolation = None if model.bundle is None else Isolation.NONE
+    answer = execute(model.label, model.name, model.python, request, isolation)
+    count = len(states["X"])
+    M, H, forces = (_result(answer, name, count) for name in ("M", "H", "inverse_dynamics"))
+    if M.ndim != 3 or H.ndim != 3 or forces.ndim != 2:
+        raise ExecutionError(f"{model.label}: its NumPy module answers with other shapes")
+    sigma = answer.calls[0].get(("condition", (), "batch"), [_singular_values(H)])[0]
+    with np.errstate(all="ignore"):
+        condition = sigma[:, 0] / sigma[:, -1] if sigma.shape[-1] else np.full(count, np.nan)
+    return _Facts(forces, _least(M), condition)
+
+
+def _result(answer: Answer, name: str, count: int) -> Array:
+    found = answer.calls[0].get((name, (), "batch"))
+    if not found or found[0].shape[:1] != (count,):
+        return np.full((count, 0), np.nan)
+    return found[0]
+
+
+def _least(M: Array) -> Array:
+    """Least eigenvalue; NaN where M has no value."""
+    good = np.isfinite(M).all(axis=(1, 2))
+    found = np.full(len(M), np.nan)
+    if good.any() and M.shape[-1]:
+        found[good] = np.linalg.eigvalsh(M[good])[:, 0]
+    return found
+
+
+def _singular_values(H: Array) -> Array:
+    good = np.isfinite(H).all(axis=(1, 2))
+    found = np.full((len(H), min(H.shape[1:])), np.nan)
+    found[good] = np.linalg.svd(H[good], compute_uv=False)
+    return found
+
+
+def _told(
+    old: _Facts,
+    new: _Facts,
+    models: tuple[Model, Model],
+    places: list[int | None],
+    *,
+    common: bool,
+) -> Iterator[Effect]:
+    actuators = [m.manifest["actuators"] for m in models]
+    size = float(np.nanmax(np.abs(old.forces[0]), initial=0.0))
+    for k, place in enumerate(places):
+        what, unit = _force(models[0], *actuators[0][k])
+        after = None if place is None else float(new.forces[0, place])
+        yield _at_home(what, float(old.forces[0, k]), after, size, unit)
+    for k in sorted(set(range(len(actuators[1]))) - set(places)):
+        what, unit = _force(models[1], *actuators[1][k])
+        yield _at_home(what, None, float(new.forces[0, k]), size, unit)
+    figures = (
+        ("least eigenvalue of M", old.least, new.least),
+        ("condition of H", old.condition, new.condition),
+    )
+    for what, a, b in figures:
+        yield _at_home(what, float(a[0]), float(b[0]), 0.0)
+    if not common:
+        return
+    matched = [(k, place) for k, place in enumerate(places) if place is not None]
+    if matched:
+        rows, columns = (list(side) for side in zip(*matched, strict=True))
+        names = [_force(models[0], *actuators[0][k])[0].split(" of ", 1)[1] for k in rows]
+        yield _around("required forces", old.forces[1:, rows], new.forces[1:, columns], names)
+    for what, a, b in figures:
+        yield _around(what, a[1:, None], b[1:, None], [""])
+
+
+def _at_home(what: str, a: float | None, b: float | None, size: float, unit: str = "") -> Effect:
+    """A figure at home; what is small against others of its kind may be rounding."""
+    changed = a is None or b is None or np.isfinite(a) != np.isfinite(b)
+    if a is not None and b is not None and np.isfinite(a) and np.isfinite(b):
+        changed = abs(a - b) > _SMALL * max(abs(a), abs(b), size)
+    return Effect(what, _HOME, a, b, bool(changed), unit)
+
+
+def _force(model: Model, leg: int, joint: int) -> tuple[str, str]:
+    """What an actuator gives, and its unit."""
+    per_leg = [pair[0] for pair in model.manifest["actuators"]].count(leg)
+    form = model.manifest.get("specification", {}).get("legs", [])
+    try:
+        kind = form[leg]["joints"][joint]["kind"]
+    except (LookupError, TypeError):  # a stranger's manifest
+        kind = "P"
+    what, unit = ("force", "N") if kind == "P" else ("torque", "N m")
+    place = f"leg {leg + 1}" + (f", joint {joint + 1}" if per_leg > 1 else "")
+    return f"required {what} of {place}", unit
+
+
+def _around(what: str, old: Array, new: Array, names: list[str]) -> Effect:
+    """The largest change over states, relative to the largest value of its column before."""
+    both = np.isfinite(old) & np.isfinite(new)
+    lost = int((np.isfinite(old).all(axis=1) != np.isfinite(new).all(axis=1)).sum())
+    size = np.max(np.abs(np.where(both, old, 0.0)), axis=0)
+    step = np.where(both, new - old, 0.0) / np.where(size > 0.0, size, 1.0)
+    at = np.unravel_index(int(np.argmax(np.abs(step))), step.shape)
+    change = float(step[at])
+    note = "" if abs(change) <= _SMALL else f"up to {100.0 * change:+.3g} %"
+    note += f" ({names[int(at[1])]})" if note and names[int(at[1])] else ""
+    if lost:
+        note += f"{'; ' if note else ''}{lost} of {len(old)} states possible in one version only"
+    return Effect(what, _AROUND, float(old[at]), float(new[at]), bool(note), note=note)

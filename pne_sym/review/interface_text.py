@@ -1,0 +1,72 @@
+"""Changes of the interface in few lines: what follows from one cause is told together."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterable, Iterator
+
+from pne_sym.review.difference import Change
+
+_SHOWN = 10
+_LONG = 100
+_WIDTH = 98
+
+
+def interface_lines(changes: list[Change]) -> Iterator[str]:
+    """Parameters, functions, sizes and the like."""
+    renamed = [c for c in changes if c.kind == "renamed" and c.what == "parameter"]
+    sized = [c for c in changes if c.kind == "changed" and c.what.startswith("function ")]
+    shaped = [c for c in changes if c.kind == "changed" and c.what.startswith("parameter ")]
+    others = [c for c in changes if c not in renamed and c not in sized and c not in shaped]
+    if renamed:
+        yield from _cut("parameters renamed:", [f"{c.before} -> {c.after}" for c in renamed])
+    if shaped:
+        yield from _alike(shaped, "parameters of another shape")
+    if sized:
+        yield from _alike(sized, "functions with other numbers of entries")
+    for kind in ("added", "removed"):
+        for what in ("parameter ", "function "):
+            group = [c for c in others if c.kind == kind and c.what.startswith(what)]
+            if len(group) > 1:
+                others = [c for c in others if c not in group]
+                names = [c.what.removeprefix(what) for c in group]
+                yield from _cut(f"{what.strip()}s {kind}:", names)
+    for c in others[:_SHOWN]:
+        yield from _single(c)
+    if len(others) > _SHOWN:
+        yield from _cut("and", [c.what for c in others[_SHOWN:]])
+
+
+def _alike(changes: list[Change], words: str) -> Iterator[str]:
+    if len(changes) == 1:
+        yield from _single(changes[0])
+        return
+    names = [c.what.partition(" ")[2] for c in changes]
+    yield from _cut(f"{words}:", names)
+
+
+def _single(c: Change) -> Iterator[str]:
+    yield f"  {c.kind}: {c.what}"
+    yield from (f"-   {_short(c.before)}" for _ in range(bool(c.before)))
+    yield from (f"+   {_short(c.after)}" for _ in range(bool(c.after)))
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= 4 * _LONG else f"{text[: 4 * _LONG]}..."
+
+
+def _cut(start: str, names: list[str]) -> list[str]:
+    more = [f"and {len(names) - _SHOWN} more"] if len(names) > _SHOWN else []
+    return listed(start, [*names[:_SHOWN], *more])
+
+
+def listed(start: str, names: Iterable[str]) -> list[str]:
+    """Names in as few lines as there is room for."""
+    return textwrap.wrap(
+        f"{start} {', '.join(names)}",
+        _WIDTH,
+        initial_indent="  ",
+        subsequent_indent="    ",
+        break_long_words=False,
+        break_on_hyphens=False,
+    )

@@ -1,0 +1,173 @@
+"""Comparisons as one Markdown comment: short first, details folded, a limit kept.
+
+GitHub takes comments of 65,536 characters, of which some are left for what a workflow adds.
+Where a comment would be longer, details go first, then whole sections, model by model from the
+longest; what was left out is said.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from pne_sym.review.diff_text import Section, measured, sections, verdict
+from pne_sym.review.difference import Comparison
+
+LIMIT = 65_000
+_RESERVE = 600
+"""For the line that tells what is left out."""
+_LEVELS = 3
+_FOLD = 12
+"""Lines of a section that are shown without folding."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """What is told of one model.
+
+    Attributes:
+        name: of the model.
+        headline: one line, plain text.
+        is_equal: nothing else is told.
+        intro: plain lines.
+        sections: what is told, the last first to be left out.
+        level: how much is told: 0 all, 1 without details, 2 specification alone, 3 the headline.
+    """
+
+    name: str
+    headline: str
+    is_equal: bool = False
+    intro: tuple[str, ...] = ()
+    sections: tuple[Section, ...] = ()
+    level: int = 0
+
+
+def as_markdown(found: Comparison) -> Iterator[str]:
+    """Markdown of one comparison."""
+    mark = "✅" if found.equal else "⚠️"
+    part = part_of("", found)
+    parts = _within([replace(part, is_equal=False)], LIMIT - _RESERVE)
+    yield f"### {mark} {escaped(part.headline)}"
+    yield from _body(parts[0])
+    yield from _left_out(parts)
+
+
+def part_of(name: str, found: Comparison) -> Part:
+    """What is told of a comparison."""
+    notes = tuple(f"> {escaped(note)}" for note in found.notes)
+    about = f"{code(found.before)} → {code(found.after)}"
+    intro = (f"{about}: {escaped(told)}." if (told := measured(found)) else about, *notes)
+    return Part(name, verdict(found), found.equal, intro, tuple(sections(found)))
+
+
+def comment(parts: Sequence[Part]) -> Iterator[str]:
+    """Markdown of several models: the equal ones in one line together, then the others."""
+    parts = _within(list(parts), LIMIT - _RESERVE)
+    equal = [p.name for p in parts if p.is_equal]
+    others = [p for p in parts if not p.is_equal]
+    count = len(others)
+    yield (
+        f"### {'⚠️' if others else '✅'} {count} of {len(parts)} models differ"
+        if others
+        else (f"### ✅ all {len(parts)} models are equal")
+    )
+    if equal:
+        yield ""
+        yield f"Equal: {', '.join(map(code, equal))}."
+    for part in others:
+        yield ""
+        yield f"#### {escaped(part.name)}: {escaped(part.headline)}"
+        if part.level < _LEVELS:
+            yield from _body(part)
+    yield from _left_out(others)
+
+
+def _body(part: Part) -> Iterator[str]:
+    yield ""
+    yield from part.intro
+    for section in _kept(part):
+        folded = section.detail or len(section.lines) > _FOLD
+        yield from _section(section, is_open=not folded)
+
+
+def _kept(part: Part) -> list[Section]:
+    if part.level == 0:
+        return list(part.sections)
+    if part.level == 1:
+        return [s for s in part.sections if not s.detail]
+    first = [s for s in part.sections if s.title == "specification"]
+    return first or list(part.sections[:1])
+
+
+def _size(part: Part) -> int:
+    """Bytes, which are not fewer than characters; equal ones need their names alone."""
+    if part.is_equal:
+        return len(part.name.encode()) + 6
+    body = list(_body(part)) if part.level < _LEVELS else []
+    head = len(f"{escaped(part.name)}: {escaped(part.headline)}".encode()) + 8
+    return head + sum(len(line.encode()) + 1 for line in body)
+
+
+def _within(parts: list[Part], limit: int) -> list[Part]:
+    """Less and less of the longest, until all fit; in the end only the first fit."""
+    sizes = [_size(p) for p in parts]
+    while sum(sizes) > limit and any(p.level < _LEVELS and not p.is_equal for p in parts):
+        k = max(
+            (k for k, p in enumerate(parts) if p.level < _LEVELS and not p.is_equal),
+            key=lambda k: sizes[k],
+        )
+        parts[k] = replace(parts[k], level=parts[k].level + 1)
+        sizes[k] = _size(parts[k])
+    total = 0
+    kept = []
+    for part, size in zip(parts, sizes, strict=True):
+        total += size
+        short = replace(part, headline=f"{part.headline[:120]}...") if total > limit else part
+        kept.append(short)
+    return kept
+
+
+def _left_out(parts: Sequence[Part]) -> Iterator[str]:
+    """What the limit did not leave room for."""
+    words = ("", "rewritings and counts", "all but the specification", "all but the headline")
+    told = [f"of {p.name or 'it'} {words[p.level]}" for p in parts if p.level and not p.is_equal]
+    if told:
+        yield ""
+        shown = "; ".join(told)
+        shown = shown if len(shown) < _RESERVE - 100 else f"of {len(told)} models details"
+        yield f"> Left out, the comment would be too long: {escaped(shown)}."
+
+
+def _section(section: Section, *, is_open: bool) -> Iterator[str]:
+    lines = section.lines
+    fence = "`" * max(4, *(len(run) + 1 for line in lines for run in _ticks(line)))
+    title = section.title[:1].upper() + section.title[1:]
+    yield ""
+    yield f"<details{' open' if is_open else ''}><summary>{escaped(title)}</summary>"
+    yield ""
+    yield f"{fence}diff"
+    yield from lines
+    yield fence
+    yield ""
+    yield "</details>"
+
+
+def _ticks(line: str) -> list[str]:
+    """Runs of backticks in a line."""
+    return "".join(c if c == "`" else " " for c in line).split() or [""]
+
+
+_LONG = 100
+
+
+def code(text: str) -> str:
+    """A text as code; long ones are cut."""
+    text = " ".join(text.split()).replace("`", "'").replace("|", "/")
+    return f"`{text[:_LONG]}{'...' if len(text) > _LONG else ''}`"
+
+
+def escaped(text: str) -> str:
+    """A text that Markdown shows as it is."""
+    for mark in "\\`*_[]<>|#@":
+        text = text.replace(mark, f"&#{ord(mark)};" if mark in "<>|#@" else f"\\{mark}")
+    return text
