@@ -98,6 +98,28 @@ class Described:
         """
         return not self.actuation.is_determined
 
+    @property
+    def quaternion_at(self) -> int | None:
+        """Where a quaternion stands in X."""
+        c = self.coordinates
+        return sum(name in "xyz" for name in c.pose) if c.has_quaternion else None
+
+    @property
+    def head(self) -> tuple[str, ...]:
+        """What heads of files say: the equation of motion, units, what vectors hold."""
+        constrained = " + Hk(X) lambda" if self.is_constrained else ""
+        return (
+            f"    M(X) A + Z(X, V) = H(X) tau + wrench{constrained}",
+            "",
+            "SI units, radians.  Linear parts first, then angular; base axes; moments about the",
+            "platform origin.",
+            "",
+            f"X:      {self.pose_text}",
+            f"V, A:   {self.rate_text}",
+            f"tau:    {self.tau_text}",
+            f"wrench: {self.wrench_text}",
+        )
+
 
 def safe_text(text: str) -> str:
     """A user's text, harmless in C comments, Python docstrings and Markdown."""

@@ -11,11 +11,10 @@ from pne_sym.backends.describe import Described, FieldView, describe, field_view
 from pne_sym.backends.numpy_functions import FunctionText, Places
 from pne_sym.backends.numpy_public import OPERATIONS, public_text, steps_text
 from pne_sym.backends.numpy_support import needed
-from pne_sym.backends.numpy_text import PythonText
 from pne_sym.backends.python_public import default_lines, exported
-from pne_sym.backends.templating import render
+from pne_sym.backends.python_text import PythonText
+from pne_sym.backends.templating import FIXED, render
 from pne_sym.derivation import AxisRelation
-from pne_sym.program import interpret, iteration, linear, operations
 from pne_sym.program.ir import Closure
 from pne_sym.program.slices import symbols
 
@@ -89,23 +88,10 @@ class NumpyBackend:
         )
 
 
-_NUMBERS = {
-    "SEARCH_STEPS": interpret.SEARCH_STEPS,
-    "HALVINGS": interpret.HALVINGS,
-    "FOUND": interpret.FOUND,
-    "CLOSE": interpret.CLOSE,
-    "STEPS": iteration.STEPS,
-    "LONGEST": iteration.LONGEST,
-    "STEADY": iteration.STEADY,
-    "PIVOT": linear.PIVOT,
-    "TINY": operations.TINY,
-}
-"""What the definitions of operations and iterations fix."""
-
-
 def support() -> str:
     """All that a module may need of written-out Python."""
-    return "\n".join(render(f"numpy/{name}.py.jinja", **_NUMBERS) for name in _SUPPORT)
+    numbers = {name.upper(): number for name, number in FIXED.items()}
+    return "\n".join(render(f"numpy/{name}.py.jinja", **numbers) for name in _SUPPORT)
 
 
 def _functions(bundle: Bundle, places: Places) -> tuple[FunctionText, ...]:

@@ -11,13 +11,13 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from pne_sym.backends.bundle import Bundle
-from pne_sym.backends.numpy_text import WIDTH, PythonText
+from pne_sym.backends.python_text import WIDTH, PythonText
 from pne_sym.backends.scalar import wrap
+from pne_sym.backends.straight import SIZES
 from pne_sym.program.count import count_function
 from pne_sym.program.ir import Block, Check, Function
 from pne_sym.program.slices import columns, flat_places, slices
 
-SIZES = {"X": "NQ", "V": "NV", "A": "NV", "q": "NJ"}
 _MATH = ("sqrt", "sin", "cos", "atan2", "least")
 _VERDICTS = {"invalid": "valid", "unreachable": "reached", "singular": "clear"}
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import textwrap
 
-from pne_sym.backends.numpy_text import WIDTH, unpacked
 from pne_sym.backends.python_public import definition, rows
+from pne_sym.backends.python_text import WIDTH, unpacked
 from pne_sym.backends.scalar import wrap
 from pne_sym.program.ir import Program
 from pne_sym.program.public import Apply, PublicFunction, Run, Step

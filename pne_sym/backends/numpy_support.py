@@ -5,6 +5,8 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterable
 
+from pne_sym.backends.templating import reached
+
 
 def needed(support: str, texts: Iterable[str]) -> str:
     """The functions, classes and constants that texts name, and those that these name.
@@ -15,14 +17,8 @@ def needed(support: str, texts: Iterable[str]) -> str:
     """
     lines = support.split("\n")
     parts = {name: node for node in ast.parse(support).body for name in _made(node)}
-    open_ = [name for text in texts for name in _named(ast.parse(text)) if name in parts]
-    found = set[str]()
-    while open_:
-        name = open_.pop()
-        if name not in found:
-            found.add(name)
-            open_ += [other for other in _named(parts[name]) if other in parts]
-    kept = dict.fromkeys(node for name, node in parts.items() if name in found)
+    found = reached(map(ast.parse, texts), parts, _named)
+    kept = dict.fromkeys(parts[name] for name in found)
     text, before = "", ""
     for node in kept:
         assert node.end_lineno is not None

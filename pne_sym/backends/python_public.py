@@ -7,7 +7,8 @@ from collections.abc import Sequence
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.describe import FieldView
-from pne_sym.backends.numpy_text import WIDTH
+from pne_sym.backends.python_text import WIDTH
+from pne_sym.backends.steps import described
 from pne_sym.program.interpret import inputs_read
 from pne_sym.program.ir import Program
 from pne_sym.program.operations import ORTHONORMAL
@@ -27,13 +28,19 @@ def default_lines(f: FieldView) -> list[str]:
     return [f'"{f.name}": [', *(f"    {row}," for row in f.rows), "],"]
 
 
-def definition(function: PublicFunction, body: Sequence[str]) -> str:
-    """A function that users call: signature, docstring and these statements."""
+def definition(function: PublicFunction, body: Sequence[str], *, plain: bool = False) -> str:
+    """A function that users call: signature, docstring and these statements.
+
+    Args:
+        function: what it is.
+        body: its statements.
+        plain: NaN is the only verdict: there are no errors, no statuses, no `nearest`.
+    """
     optional = [f"{a.name}=None" for a in function.optional]
-    optional += ["nearest=False"] * takes_rotation(function)
+    optional += ["nearest=False"] * (takes_rotation(function) and not plain)
     arguments = [a.name for a in function.required] + ["p=None"] * function.needs_model
     arguments += ["*", *optional] if optional else []
-    lines = [*_docstring(function), *body]
+    lines = [*_docstring(function, plain=plain), *body]
     head = f"def {function.name}({', '.join(arguments)}):"
     return "\n".join((head, textwrap.indent("\n".join(lines), "    ").replace("\n    \n", "\n\n")))
 
@@ -71,17 +78,17 @@ def _row(argument: Argument, *, is_read: bool) -> str:
     return f"({', '.join(parts)})"
 
 
-def _docstring(function: PublicFunction) -> list[str]:
+def _docstring(function: PublicFunction, *, plain: bool) -> list[str]:
     notes = [line for note in function.notes for line in ("", *_filled(note, ""))]
     inputs = [_described(a.name, a) for a in function.inputs]
-    rotation = takes_rotation(function)
+    rotation = takes_rotation(function) and not plain
     if rotation:
         inputs.append(
             "nearest: take the rotation that is nearest to R: the least sum of squared differences."
         )
     inputs += ["p: parameters, by default those of the specification."] * function.needs_model
     outputs = [_described(a.label, a) for a in function.outputs]
-    outputs += [f"status: {_STATUS} (...)."] * function.gives_status
+    outputs += [f"status: {_STATUS} (...)."] * (function.gives_status and not plain)
     return [
         *_filled(f'"""{function.meaning}', ""),
         *notes,
@@ -101,16 +108,12 @@ _NO_ROTATION = (
     "nearest rotation."
 )
 _FILL = {None: "None", Default.ZEROS: "0.0", Default.ONES: "1.0", Default.HOME_Q: "HOME_Q"}
-_BY_DEFAULT = {Default.ZEROS: "zero", Default.ONES: "one", Default.HOME_Q: "HOME_Q"}
 _STATUS = "0 OK, 1 unreachable, 2 singular leg, 3 invalid, 4 not converged, as in C"
 
 
 def _described(name: str, argument: Argument) -> str:
     shape = ", ".join(("...", *argument.dimensions)) if argument.dimensions else "...,"
-    meaning = f"{name}: {argument.meaning}"
-    if argument.default and "by default" not in meaning:
-        meaning += f", by default {_BY_DEFAULT[argument.default]}"
-    return f"{meaning} ({shape})."
+    return described(name, argument, shape)
 
 
 def _filled(text: str, indent: str) -> list[str]:

@@ -122,7 +122,7 @@ class ScalarPrinter(StrPrinter):
             raise TypeError(f"no function {type(expr).__name__} in generated code")
         return f"{name}({', '.join(self._print(arg) for arg in expr.args)})"
 
-    _print_sin = _print_cos = _print_atan2 = _print_Function
+    _print_sin = _print_cos = _print_atan2 = _print_acos = _print_Function
 
     def _print_Abs(self, expr: Any) -> str:
         return self._print_Function(expr)

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Iterable, Mapping
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import jinja2
 
 from pne_sym.model.body import RELATIVE
 from pne_sym.model.values import LARGEST, ROUNDING, SNAP
+from pne_sym.program import interpret, iteration, linear, operations
 
 LIMITS = {
     "largest": f"{LARGEST:g}",
@@ -18,6 +21,19 @@ LIMITS = {
     "snap": f"{SNAP:g}",
 }
 """What the reader of specifications allows, for the checks of parameters at run time."""
+FIXED = {
+    "pivot": linear.PIVOT,
+    "orthonormal": operations.ORTHONORMAL,
+    "tiny": operations.TINY,
+    "steps": iteration.STEPS,
+    "longest": iteration.LONGEST,
+    "steady": iteration.STEADY,
+    "search_steps": interpret.SEARCH_STEPS,
+    "halvings": interpret.HALVINGS,
+    "found": interpret.FOUND,
+    "close": interpret.CLOSE,
+}
+"""What the definitions of operations and iterations fix."""
 
 
 def template_folder() -> Path:
@@ -45,6 +61,7 @@ def environment() -> jinja2.Environment:
         autoescape=False,  # noqa: S701
     )
     made.globals["limits"] = LIMITS
+    made.globals["fixed"] = FIXED
     return made
 
 
@@ -54,11 +71,26 @@ def render(template: str, **fields: object) -> str:
 
 
 @cache
-def methods(folder: str) -> frozenset[str]:
-    """Names of the methods that Python templates of a folder define."""
-    texts = (
-        path.read_text(encoding="utf-8") for path in template_folder().joinpath(folder).iterdir()
-    )
-    return frozenset(
-        name for t in texts for name in re.findall(r"^    def (\w+)\(self", t, re.MULTILINE)
-    )
+def defined(folder: str, pattern: str) -> frozenset[str]:
+    """Names of the functions that the templates of a folder define, by a pattern of their heads."""
+    files = sorted(template_folder().joinpath(folder).iterdir())
+    found = (re.findall(pattern, f.read_text(encoding="utf-8"), re.MULTILINE) for f in files)
+    return frozenset(name for names in found for name in names)
+
+
+def reached(
+    users: Iterable[Any], parts: Mapping[str, Any], named: Callable[[Any], Iterable[str]]
+) -> list[str]:
+    """Names of the parts that users need, directly or not, in the order of the parts.
+
+    Args:
+        users: texts or trees.
+        parts: others, by the names under which they are used.
+        named: names that occur in one.
+    """
+    new = {name for user in users for name in named(user)} & set(parts)
+    found = set[str]()
+    while new:
+        found |= new
+        new = {name for one in new for name in named(parts[one])} & set(parts) - found
+    return [name for name in parts if name in found]

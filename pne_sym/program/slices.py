@@ -97,12 +97,17 @@ def columns(shape: tuple[int, ...]) -> int:
     return shape[1] if len(shape) == 2 else 1
 
 
-def flat_places(store: Store, width: int, legs: int = 1) -> tuple[int, ...]:
-    """Flat index of a stored entry for every leg; `width` is the length of the array's rows."""
+def places_of(store: Store, legs: int = 1) -> tuple[tuple[int, int], ...]:
+    """Row and column of a stored entry for every leg."""
     row, column = store.row, 0 if store.column is None else store.column
     rows = row if isinstance(row, tuple) else (row,) * legs
     across = column if isinstance(column, tuple) else (column,) * legs
-    return tuple(r * width + c for r, c in zip(rows, across, strict=True))
+    return tuple(zip(rows, across, strict=True))
+
+
+def flat_places(store: Store, width: int, legs: int = 1) -> tuple[int, ...]:
+    """Flat index of a stored entry for every leg; `width` is the length of the array's rows."""
+    return tuple(row * width + column for row, column in places_of(store, legs))
 
 
 def is_full(

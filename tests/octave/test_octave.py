@@ -57,12 +57,15 @@ def test_how_functions_are_called(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("call", "told"),
     [
-        ("M([1; 2])", "X: expected 3 x n, n = 1 or 1"),
-        ("Z(zeros(3, 4), zeros(3, 2))", "V: expected 3 x n"),
+        ("M([1; 2])", "X: expected real numbers, 3 x n, n = 1 or 1"),
+        ("Z(zeros(3, 4), zeros(3, 2))", "V: expected real numbers, 3 x n, n = 4 or 1"),
         ("M([1; 2; 1i])", "X: expected real numbers"),
         ("M(true(3, 1))", "X: expected real numbers"),
         ("M(zeros(3, 1), setfield(planar_3rpr.parameters(), 'gravity', 1))", "p.gravity: "),
-        ("forward_dynamics(ones(3, 1), ones(3, 1), ones(3, 1), [], 1)", "wrench: expected 3 x n"),
+        (
+            "forward_dynamics(ones(3, 1), ones(3, 1), ones(3, 1), [], 1)",
+            "wrench: expected real numbers, 3 x n",
+        ),
     ],
 )
 def test_what_does_not_fit_is_named(call: str, told: str, tmp_path: Path) -> None:
@@ -99,7 +102,11 @@ def test_statuses_that_the_numpy_module_has_no_word_for() -> None:
 def test_help(tmp_path: Path) -> None:
     path = write(models.catalogue("planar_3rpr"), tmp_path)
     told = run("help('planar_3rpr.inverse_dynamics');", path)
-    for line in ("tau (3 x n): actuator forces [N or N m].", "status (1 x n): 0 OK", "X (3 x n)"):
+    for line in (
+        "tau: actuator forces [N or N m] (3 x n).",
+        "status (1 x n): 0 OK",
+        "X: pose, and extra coordinates (3 x n).",
+    ):
         assert line in told
     assert "Generated" not in told
 

@@ -127,11 +127,12 @@ def test_a_pivot_near_the_threshold_counts_as_in_numpy() -> None:
     a, b = rng.uniform(-1.0, 1.0, (count, 6, 6)), rng.uniform(-1.0, 1.0, (count, 6))
     a[:, 5] = a[:, 4]
     a[:, 5, 2] += np.logspace(-14.0, -10.0, count)
-    state = x._State()
+    state = x._State.__new__(x._State)
     state.xp, state.dtype, state.flags, state.lead = np, np.float64, [], (count,)
     state.ok, state.pivot = np.ones(count, dtype=bool), 2.0**-39
-    state.solve(np.moveaxis(a, 0, -1), b.T)
-    wanted, least = np.isfinite(m._solve(a, b)).all(axis=1), linear.least_pivot(a)
+    rows, sides = np.moveaxis(a, 0, -1), b.T
+    state.solve(rows, sides)
+    wanted, least = np.isfinite(m._solve(rows, sides)).all(axis=0), linear.least_pivot(a)
     near = np.abs(least - linear.PIVOT) < 0.03 * linear.PIVOT  # eps^(3/4), there to two digits
     assert np.sum(near) < 10
     assert min(np.sum(wanted), np.sum(~wanted)) > 50

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.describe import describe, field_views
-from pne_sym.backends.templating import methods, render
-from pne_sym.backends.xp.functions import Code
-from pne_sym.backends.xp.public import expressions, public_text, steps_text
-from pne_sym.program.ir import Closure
+from pne_sym.backends.python_public import definition
+from pne_sym.backends.steps import COMMON
+from pne_sym.backends.templating import defined, render
+from pne_sym.backends.xp.printers import PRINTER, Code, Steps
+from pne_sym.program.public import Default, PublicFunction
 
 
 class XpBackend:
@@ -16,36 +17,32 @@ class XpBackend:
     @property
     def operations(self) -> frozenset[str]:
         """Those that are expressions, and those that are methods of the state in templates/xp."""
-        return expressions() | methods("xp")
+        return defined("xp", r"^    def (\w+)\(self").union(Steps.expressions, COMMON)
 
     def emit(self, bundle: Bundle) -> dict[str, str]:
         """File name -> text."""
-        program, c, code = bundle.program, bundle.coordinates, Code(bundle)
-        exported = [f for f in program.public if f.is_exported]
-        run = {name for f in program.public for name in f.functions}
-        run |= {f"closure_{closure.leg_type}" for closure in program.closures}
-        text = render(
-            "xp/module.py.jinja",
-            d=describe(bundle),
-            fields=field_views(bundle),
-            exported=sorted(f.name for f in exported),
-            code=(
-                code.prepare(),
-                *(code.function(f) for f in program.functions.values() if f.name in run),
-                *(steps_text(program, f) for f in program.public),
-                *map(public_text, exported),
-            ),
-            closures=[_closure(bundle, closure) for closure in program.closures],
-            given=program.given,
-            quaternion=sum(name in "xyz" for name in c.pose) if c.has_quaternion else None,
-        )
-        return {f"{bundle.name}_xp.py": text}
+        program = bundle.program
+        code, steps = Code(bundle, PRINTER), Steps(program)
+        facts = {
+            "d": describe(bundle),
+            "fields": field_views(bundle),
+            "program": program,
+            "prepare": code.prepared(),
+            "functions": [(f, code.body(f)) for f in program.functions.values()],
+            "stored": code.stored,
+            "steps": [(f, steps.lines(f)) for f in program.public],
+            "exported": {f.name: _public(f) for f in program.public if f.is_exported},
+        }
+        return {f"{bundle.name}_xp.py": render("xp/module.py.jinja", **facts)}
 
 
-def _closure(bundle: Bundle, closure: Closure) -> str:
-    """A row of the table of closures."""
-    function = bundle.program.functions[f"closure_{closure.leg_type}"]
-    shape = (*bundle.program.shapes[f"gap_{closure.leg_type}"], closure.unknowns)
-    branch = (closure.rows, tuple(map(float, closure.signs)))
-    facts = f"{function.inputs}, {shape}, {branch}, {closure.places}, {closure.turning}"
-    return f"(_run_{function.name}, {facts})"
+def _public(function: PublicFunction) -> str:
+    """A function that users call."""
+    fill = {Default.ZEROS: "(0.0,) * {}", Default.ONES: "(1.0,) * {}", Default.HOME_Q: "HOME_Q"}
+    body = ["arguments = {  # with shape and default"]
+    for a in function.inputs:
+        default = fill[a.default].format(a.value.size) if a.default else None
+        body.append(f'    "{a.name}": ({a.name}, {a.value.shape}, {default}),')
+    p = "p" if function.needs_model else "None"
+    body += ["}", f"return _call(_steps_{function.name}, {p}, arguments)"]
+    return definition(function, body, plain=True)

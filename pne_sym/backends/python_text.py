@@ -2,41 +2,23 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-import sympy as sp
-
 from pne_sym.backends.bundle import Bundle
-from pne_sym.backends.describe import equation_titles
 from pne_sym.backends.scalar import PYTHON, ScalarPrinter, wrap
-from pne_sym.program.ir import Assignment
+from pne_sym.backends.straight import StraightText
 
 WIDTH = 98
 
 
-class PythonText:
+class PythonText(StraightText):
     """Writes the lines of function bodies, for places that are indented so far."""
 
-    def __init__(self, bundle: Bundle, indent: int = 4) -> None:
+    comment = "#"
+
+    def __init__(
+        self, bundle: Bundle, printer: ScalarPrinter | None = None, indent: int = 4
+    ) -> None:
+        super().__init__(bundle, printer or ScalarPrinter(PYTHON))
         self.width = WIDTH - indent
-        self.printer = ScalarPrinter(PYTHON)
-        self.titles = equation_titles(bundle.derivation)
-
-    def of(self, expr: Any) -> str:
-        """A scalar expression."""
-        return str(self.printer.doprint(sp.sympify(expr)))
-
-    def statements(self, assignments: tuple[Assignment, ...]) -> list[str]:
-        """Assignments, headed by the equations they belong to."""
-        lines: list[str] = []
-        equation = ""
-        for assignment in assignments:
-            if assignment.equation != equation:
-                equation = assignment.equation
-                title = self.titles.get(equation, "")
-                lines.append(f"# ({equation}) {title}" if title else f"# {equation}: named entries")
-            lines += self.assign(str(assignment.target), self.of(assignment.expr))
-        return lines
 
     def assign(self, target: str, value: str) -> list[str]:
         """An assignment, on several lines if it is long."""

@@ -1,0 +1,117 @@
+"""Steps of public functions as text, and words on what users call, for printers of any language."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Mapping
+
+from pne_sym.backends.straight import places
+from pne_sym.program.ir import Program
+from pne_sym.program.operations import OPERATIONS
+from pne_sym.program.public import Apply, Argument, Default, PublicFunction, Run, Search, Step
+
+COMMON = {"add": "{0} + {1}", "subtract": "{0} - {1}", "same": "{0}", "negative": "-{0}"}
+"""Operations that are the same expressions in all languages."""
+
+
+class StepText:
+    """Writes steps, in the forms of a language: texts with the parts in braces, a line each.
+
+    Attributes:
+        expressions: operations that are more than a call, by name: {0}, {1} ... are the operands,
+            {n} and {numbers} what is fixed, {targets} the results, {rest} by how many entries the
+            first of them has more than the first operand.
+        call: all others, of {name} and {operands}; what is fixed comes last.
+        apply: {targets} get the {value}.
+        several: more than one of them.
+        made: behind that for each {target}, with its status {code} where it is not finite.
+        run: {each}, the results with commas behind them, of a {function} at {inputs}.
+        search: {target} from {start}, of a {residual} and its {slope}, which take {given} and
+            {guess} behind the pose, with commas before them; with {halving} of steps or without.
+        closing: finds the displacements q.
+        first: where arrays begin to count.
+    """
+
+    expressions: Mapping[str, str]
+    call: str
+    apply: str
+    several = "{}"
+    made = ""
+    run: str
+    search: str
+    closing: str
+    first = 0
+
+    def __init__(self, program: Program) -> None:
+        self.program = program
+        self.functions = {f.name: f for f in program.public}
+
+    def lines(self, function: PublicFunction) -> list[str]:
+        """The steps in order; displacements are closed before the first one that reads them."""
+        lines: list[str] = []
+        closed = False
+        for step in function.steps:
+            if isinstance(step, Run) and not closed:
+                closed = "q" in self.program.functions[step.function].inputs
+                lines += [self.closing] if closed else []
+            lines += self._step(step)
+        return lines
+
+    def others(self, name: str) -> str:
+        """Inputs of a public function behind the pose, with commas before them."""
+        return "".join(f", {a.name}" for a in self.functions[name].inputs if a.name != "X")
+
+    def _step(self, step: Step) -> list[str]:
+        if isinstance(step, Run):
+            each = "".join(f"{target.name}, " for target in step.targets)
+            inputs = ", ".join(self.program.functions[step.function].inputs)
+            return [self.run.format(each=each.rstrip(), function=step.function, inputs=inputs)]
+        if isinstance(step, Search):
+            text = self.search.format(
+                target=step.target.name,
+                start=step.start.name,
+                residual=step.residual,
+                slope=step.slope,
+                given=self.others(step.residual),
+                guess=self.others(step.slope),
+                halving=step.halving,
+            )
+            return [text]
+        targets = ", ".join(target.name for target in step.targets)
+        targets = targets if len(step.targets) == 1 else self.several.format(targets)
+        lines = [self.apply.format(targets=targets, value=self._applied(step))]
+        code = int(OPERATIONS[step.operation].status)
+        made = (self.made.format(target=target.name, code=code) for target in step.targets)
+        return lines + [line for line in made if line]
+
+    def _applied(self, step: Apply) -> str:
+        """An operation at its operands."""
+        operands, first = [operand.name for operand in step.operands], step.targets[0]
+        numbers = places(step.numbers, self.first)
+        form = {**COMMON, **self.expressions}.get(step.operation, self.call)
+        takes = inspect.signature(OPERATIONS[step.operation].compute).parameters
+        return form.format(
+            *operands,
+            name=step.operation,
+            operands=", ".join([*operands, *([numbers] if "numbers" in takes else [])]),
+            numbers=numbers,
+            n=(*step.numbers, 0)[0],
+            targets=", ".join(target.name for target in step.targets),
+            rest=first.size - (step.operands[0].size if step.operands else 0),
+        )
+
+
+def described(name: str, argument: Argument, shape: str, home: str = "HOME_Q") -> str:
+    """Words on an argument or a result.
+
+    Args:
+        name: under which users know it.
+        argument: what it is.
+        shape: in the language.
+        home: what the language calls the displacements at home.
+    """
+    meaning = f"{name}: {argument.meaning}"
+    if argument.default and "by default" not in meaning:
+        default = {Default.ZEROS: "zero", Default.ONES: "one"}.get(argument.default, home)
+        meaning += f", by default {default}"
+    return f"{meaning} ({shape})."
