@@ -177,7 +177,7 @@ def _functions(bundle: Bundle) -> tuple[dict[str, str], dict[str, Routine]]:
     """Texts of the program's functions that are run, and the routines that run them."""
     texts, runs, program = {}, {}, bundle.program
     run = {name for f in program.public for name in f.functions}
-    run |= {f"closure_{closure.leg_type}" for closure in program.closures}
+    run |= {closure.function for closure in program.closures}
     for function in (f for n, f in program.functions.items() if n in run):
         texts[function.name], runs[function.name] = function_text(bundle, function)
     return texts, runs
