@@ -174,9 +174,11 @@ def _closing(bundle: Bundle, closures: tuple[CClosure, ...]) -> str:
 
 
 def _functions(bundle: Bundle) -> tuple[dict[str, str], dict[str, Routine]]:
-    """Texts of the program's functions, and the routines that run them."""
-    texts, runs = {}, {}
-    for function in bundle.program.functions.values():
+    """Texts of the program's functions that are run, and the routines that run them."""
+    texts, runs, program = {}, {}, bundle.program
+    run = {name for f in program.public for name in f.functions}
+    run |= {closure.function for closure in program.closures}
+    for function in (f for n, f in program.functions.items() if n in run):
         texts[function.name], runs[function.name] = function_text(bundle, function)
     return texts, runs
 

@@ -44,12 +44,12 @@ _LANES = {
     "half_form": "half_form({m}, {w}, {a}, {b}, {x});",
     "beside": "beside({m}, {row}, {row_b}, {a}, {b}, {x});",
     "join": "beside(1, {all_a}, {all_b}, {a}, {b}, {x});",
-    "saddle": "saddle({m}, {p}, {w}, {a}, {b}, {x});",
-    "solve": "solve({m}, {w}, {a}, {b}, work, {x}, why.singular);",
+    "saddle": "saddle({m}, {p}, {stride}, {w}, {a}, {b}, {x});",
+    "solve": "solve({m}, {w}, {b}, work, {x}, why.singular);",
 }
 """Calls for states side by side."""
 _SINGLE = {
-    "solve": "solve_state({m}, {a}, {b}, work, {x}, why.singular);",
+    "solve": "solve_state({m}, {b}, work, {x}, why.singular);",
     "least_norm": "least_norm({m}, {n}, {a}, {b}, {x}, why.singular);",
     "resolve": "resolve({m}, {n}, {first}, {a}, {x}, {y}, why.singular);",
     "null_basis": "null_basis({m}, {n}, {first}, {a}, {x});",
@@ -225,11 +225,16 @@ class Steps:
 
     def _applied(self, step: Apply) -> list[str]:
         """An operation at its operands."""
-        name, targets = step.operation, [self._made(t) for t in step.targets]
+        name, in_place = step.operation, self._is_solved(step)
+        if in_place:
+            self.at[step.targets[0].name] = "work"
+        targets = ["work"] if in_place else [self._made(t) for t in step.targets]
         if not any(t.size for t in step.targets):
             return []
         fields = self._fields(step, targets)
         lines = []
+        if name == "solve" and fields["a"] != "work":
+            lines.append("set_matrix({m}, {w}, {a}, work);".format(**fields))
         if name in _ENTRIES:
             entry = _ENTRIES[name].format(**fields) if step.operands[0].size else "0"
             body = indented(statement(f"{targets[0]}[i] = {entry}"))
@@ -244,6 +249,17 @@ class Steps:
             fields["places"] = table
         return [*lines, *(wrap(call.format(**fields), WIDTH - 4, "    ") if call else [])]
 
+    def _is_solved(self, step: Apply) -> bool:
+        """Whether the result is a matrix that stands where the next solution finds it."""
+        later = self.f.steps[self.f.steps.index(step) + 1 :]
+        solves = (s for s in later if isinstance(s, Apply) and s.operation == "solve")
+        solved = next(solves, None)
+        return (
+            step.operation == "saddle"
+            and solved is not None
+            and (solved.operands[0] == step.targets[0])
+        )
+
     def _fields(self, step: Apply, targets: Sequence[str]) -> dict[str, object]:
         """What calls are made of."""
         m, n = (*step.operands[0].shape, 1, 1)[:2]
@@ -251,11 +267,13 @@ class Steps:
         size = step.targets[0].size
         if step.operation == "solve":
             self.work = max(self.work, m * padded(m))
+        stride = f"stride_of({m + p}, {self.w})" if "work" in targets else m + p
         return {
             **dict(zip("abc", (self.at[o.name] for o in step.operands), strict=False)),
             **dict(zip("xy", targets, strict=False)),
             **{f"all_{c}": self._by(o.size) for c, o in zip("abc", step.operands, strict=False)},
-            "m": m, "n": n, "p": p, "w": self.w, "size": size, "all": self._by(size),
+            "m": m, "n": n, "p": p, "stride": stride, "w": self.w, "size": size,
+            "all": self._by(size),
             "row": self._by(n), "row_b": self._by(p), "count": len(step.numbers),
             "first": (*step.numbers, 0)[0],
         }  # fmt: skip
