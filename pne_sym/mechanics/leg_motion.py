@@ -12,7 +12,7 @@ from typing import Any
 
 import sympy as sp
 
-from pne_sym.derivation import Book, Law, Quantity, ReciprocalBasis, Role
+from pne_sym.derivation import Book, ReciprocalBasis, Role
 from pne_sym.mechanics.completion import Freedoms, LeftOut, completed_wrenches
 from pne_sym.mechanics.constraints import (
     directions_left_out,
@@ -23,6 +23,7 @@ from pne_sym.mechanics.inverse_kinematics import InverseKinematics
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.linear_writer import LegMotion, LinearWriter
 from pne_sym.mechanics.platform_motion import PlatformMotion
+from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.model.kinematics import TaskSpace
 from pne_sym.vector import (
     Compose,
@@ -42,6 +43,70 @@ from pne_sym.vector import (
 # Units of what is reciprocal to the freedom of a joint, by whether its displacement is an angle.
 _FORCE_PART = {True: "1/m", False: "-"}
 _MOMENT_PART = {True: "-", False: "m"}
+
+_TERMS = glossary(r"""
+r_# | \mathbf r_{#} | m | GEOMETRY
+    from joint # to the connection point, along the links
+S_dot | \dot{\mathbf S} | m/s | RATE POINT_VELOCITY | Sec. 2.5, step 1.1
+    velocity of the connection point
+v_# | \mathbf v_{#} |  | RATE | Sec. 2.2, joint table
+    velocity of the connection point per rate of joint #
+o_# | \mathbf o_{#} |  | RECIPROCITY RECIPROCAL | Sec. 2.2, joint table
+    moment part of reciprocal wrench #
+n_m# | \mathbf n_{m#} |  | GEOMETRY | Sec. 2.2, joint table
+    direction # of the moment that the platform joint transmits
+m#_% | m_{&#} |  | RECIPROCITY | Sec. 2.2, joint table
+    moment part # of reciprocal wrench &
+S_dot_rest | \dot{\mathbf S}' | m/s | RATE
+    velocity of the connection point left to the joints that are not extra
+eta_# | \eta_{#} | rad/s | RATE
+    rate at which the joints turn along moment direction #
+qd_# | \dot q_{#} | U/s | RECIPROCITY RATE
+    rate of joint #
+omega_# | \boldsymbol\omega_{#} | rad/s | RATE
+    angular velocity of link #
+W_# | \mathbf W_{#} | 1/s^2 | DEFINITION symmetric
+    centripetal tensor of link #
+u_1 | \mathbf u_1 | m/s^2 | RATE | Eq. 23
+    centripetal acceleration of the connection point
+a_p | \mathbf a_p | m/s^2 | RATE COLLECTED_ACCELERATION | Eq. 23
+    acceleration of the connection point without its centripetal part
+S_ddot | \ddot{\mathbf S} | m/s^2 | RATE POINT_ACCELERATION | Eq. 23
+    acceleration of the connection point
+zeta_# | \boldsymbol\zeta_{#} | rad/s^2 | RATE
+    angular acceleration of link # from the turning of axis #
+bias | \mathfrak b | m/s^2 | RATE BIAS | Sec. 2.2
+    acceleration of the connection point at zero joint accelerations
+rel | \ddot{\mathbf S}' ; \mathbf E | m/s^2 | RATE
+    acceleration of the connection point left to the joint accelerations
+etad_# | \dot\eta_{#} ; \boldsymbol\eta_{#} | rad/s^2 | RATE
+    acceleration with which the joints turn along moment direction #
+qdd_# | \ddot q_{#} ; \mathbf w_{#} | U/s^2 | RECIPROCITY JOINT_ACCELERATION | Eqs. 8, 9, 16
+    acceleration of joint #
+nd_m# | \dot{\mathbf n}_{m#} | 1/s | RATE
+    rate of moment direction #
+nu_# | \nu_{#} | rad/s^2 | RATE | Sec. 2.2, joint table
+    bias of the angular acceleration along moment direction #
+alpha_# | \boldsymbol\alpha_{#} ; \boldsymbol\Omega_{#} | rad/s^2 | RATE
+    angular acceleration of link #
+a_o# | \mathbf a_{o#} ; \mathbf V_{#} | m/s^2 | RATE
+    acceleration of the origin of joint #
+w_# | \mathbf w_{#} |  | RECIPROCITY RECIPROCAL | Sec. 2.3
+    reciprocal vector %
+wn_# | \mathbf w_{c#} |  | RECIPROCITY RECIPROCAL | Sec. 2.3
+    reciprocal vector %
+yd_# | \dot y_{#} | U/s | given RATE
+    rate of extra joint #
+ydd_# | \ddot y_{#} | U/s^2 | given JOINT_ACCELERATION
+    acceleration of extra joint #
+beta_# | \boldsymbol\beta_{#} | rad/s^2 | RATE
+    angular acceleration of link # at zero joint accelerations
+B_# | \mathbf B_{#} | 1/s^2 | DEFINITION
+    acceleration tensor of link #
+B_#_o | \mathbf B^{\circ}_{#} | 1/s^2 | DEFINITION
+    remainder of the acceleration tensor of link #
+""")
+_WRENCH = {"title": "force part of reciprocal wrench {k}", "reference": "Sec. 2.2, joint table"}
 
 _RATES = (
     r"Each joint j moves the connection point along its velocity vector $`\mathbf v_j`$: "
@@ -77,15 +142,19 @@ class _Screw:
     """A column of a leg's system: a joint's freedom, or a wrench that the freedoms leave out.
 
     Attributes:
-        stem, latex: of the vector reciprocal to it.
+        stem: of the vector reciprocal to it.
+        number: of the joint, or of the wrench.
         is_angle: its displacement is an angle.
-        joint: from 1; 0 for a wrench.
     """
 
     stem: str
-    latex: str
+    number: int
     is_angle: bool = False
-    joint: int = 0
+
+    @property
+    def joint(self) -> int:
+        """The joint; 0 for a wrench."""
+        return self.number if self.stem == "w_#" else 0
 
 
 class MotionWriter:
@@ -105,6 +174,7 @@ class MotionWriter:
         self.S = inverse.S
         self.is_closed = inverse.is_closed
         self.motion = LegMotion()
+        self.eq = Writer(book, g, _TERMS, LinearWriter(book, g, self.motion).define)
 
     def write(self, prefix: str) -> LegMotion:
         """Write the chapters on rates and accelerations."""
@@ -160,18 +230,8 @@ class MotionWriter:
         """From the origin of turning joint j to the connection point."""
         g = self.g
         vector = vector_sum((self.spans[j], following))
-        if isinstance(vector, VectorSymbol) or vector == ZeroVector:
-            return vector
-        named: Vector = self.book.define(
-            g.name(f"r_{j}"),
-            vector,
-            rf"\mathbf r_{{{j}}}",
-            f"from joint {j} to the connection point, along the links",
-            Law.GEOMETRY,
-            unit="m",
-            body=g.frame("axes", j),
-            forms=self._closed_loop(j),
-        )
+        frame, forms = g.frame("axes", j), self._closed_loop(j)
+        named: Vector = self.eq.named("r_#", vector, j, body=frame, forms=forms)
         return named
 
     def _closed_loop(self, j: int) -> tuple[Vector, ...]:
@@ -194,18 +254,8 @@ class MotionWriter:
 
     def velocity(self) -> None:
         """Velocity of the connection point, joint screws, reciprocal wrenches, rates."""
-        g, book, p = self.g, self.book, self.p
-        self.S_dot = book.define(
-            g.name("S_dot"),
-            p.t_dot + Cross(p.omega, g.platform_point),
-            r"\dot{\mathbf S}",
-            "velocity of the connection point",
-            Law.RATE,
-            unit="m/s",
-            reference="Sec. 2.5, step 1.1",
-            body="base",
-            role=Role.POINT_VELOCITY,
-        )
+        g, p = self.g, self.p
+        self.S_dot = self.eq("S_dot", p.t_dot + Cross(p.omega, g.platform_point), body="base")
         turning = [j for j in range(1, g.count + 1) if g.turns(j)]
         self.spans = {group: self.span(group) for group in [0, *turning]}
         rods: dict[int, Vector] = {}
@@ -227,15 +277,8 @@ class MotionWriter:
         if not g.turns(j):
             return g.e[j]
         vector = Cross(g.spin(j), rods[j]) + g.slide(j)
-        named: Vector = self.book.define(
-            g.name(f"v_{j}"),
-            vector,
-            rf"\mathbf v_{{{j}}}",
-            f"velocity of the connection point per rate of joint {j}",
-            Law.RATE,
-            unit=g.kind(j).velocity_unit,
-            body=self.tip_frame(),
-            reference="Sec. 2.2, joint table",
+        named: Vector = self.eq(
+            "v_#", vector, j, body=self.tip_frame(), unit=g.kind(j).velocity_unit
         )
         return named
 
@@ -262,8 +305,8 @@ class MotionWriter:
             for row, amount in zip(rows, wrench.amounts, strict=True):
                 row.append(amount)
         screws = [
-            *(_Screw(f"w_{j}", rf"\mathbf w_{{{j}}}", g.kind(j).is_angle, j) for j in joints),
-            *(_Screw(f"wn_{k}", rf"\mathbf w_{{c{k}}}") for k in range(1, missing + 1)),
+            *(_Screw("w_#", j, g.kind(j).is_angle) for j in joints),
+            *(_Screw("wn_#", k) for k in range(1, missing + 1)),
         ]
         duals, moment_duals = (
             self._define_wrenches(vectors, rows, screws)
@@ -274,17 +317,8 @@ class MotionWriter:
         for j, amounts in zip(joints, moment_duals, strict=False):
             motion.m[j] = amounts
             moment = vector_sum(m * n for m, n in zip(amounts, motion.n, strict=True))
-            motion.o[j] = motion.named[moment] = self.book.define(
-                g.name(f"o_{j}"),
-                moment,
-                rf"\mathbf o_{{{j}}}",
-                f"moment part of reciprocal wrench {j}",
-                Law.RECIPROCITY,
-                unit=_MOMENT_PART[g.kind(j).is_angle],
-                body=self.tip_frame(),
-                reference="Sec. 2.2, joint table",
-                role=Role.RECIPROCAL,
-                joint=j,
+            motion.o[j] = motion.named[moment] = self.eq(
+                "o_#", moment, j, body=self.tip_frame(), unit=_MOMENT_PART[g.kind(j).is_angle]
             )
         frames = tuple(dict.fromkeys(g.frame("axes", g.group[j]) for j in range(g.count, -1, -1)))
         self.book.bases.append(
@@ -303,82 +337,45 @@ class MotionWriter:
     def _moment_directions(self) -> None:
         """Directions of the moments that the platform joint transmits."""
         for k, (link, platform) in enumerate(self.g.pairs, 1):
-            self.motion.n.append(
-                self.book.define(
-                    self.g.name(f"n_m{k}"),
-                    Cross(link, platform),
-                    rf"\mathbf n_{{m{k}}}",
-                    f"direction {k} of the moment that the platform joint transmits",
-                    Law.GEOMETRY,
-                    body=self.tip_frame(),
-                    reference="Sec. 2.2, joint table",
-                )
-            )
+            self.motion.n.append(self.eq("n_m#", Cross(link, platform), k, body=self.tip_frame()))
 
     def _define_wrenches(
         self, vectors: list[Any], rows: list[list[Any]], screws: list[_Screw]
     ) -> tuple[list[Any], list[list[Any]]]:
         """Reciprocal wrenches where the leg transmits moments."""
-        book, g = self.book, self.g
         columns = sp.Tuple(*vectors), sp.Tuple(*(sp.Tuple(*row) for row in rows))
         duals, moments = [], []
-        for k, screw in enumerate(screws):
-            duals.append(
-                book.define(
-                    g.name(screw.stem),
-                    DualVector(sp.Integer(k), *columns),
-                    screw.latex,
-                    f"force part of reciprocal wrench {k + 1}",
-                    Law.RECIPROCITY,
-                    unit=_FORCE_PART[screw.is_angle],
-                    body=self.tip_frame(),
-                    reference="Sec. 2.2, joint table",
-                    role=Role.RECIPROCAL,
-                    joint=screw.joint,
-                )
-            )
-            moments.append(
-                [
-                    book.define(
-                        g.name(f"m{i + 1}_{screw.stem}"),
-                        DualScalar(sp.Integer(k), sp.Integer(i), *columns),
-                        f"m_{{{k + 1}{i + 1}}}",
-                        f"moment part {i + 1} of reciprocal wrench {k + 1}",
-                        Law.RECIPROCITY,
-                        unit=_MOMENT_PART[screw.is_angle],
-                        reference="Sec. 2.2, joint table",
-                    )
-                    for i in range(len(rows))
-                ]
-            )
+        for k, screw in enumerate(screws, 1):
+            value = DualVector(sp.Integer(k - 1), *columns)
+            duals.append(self._reciprocal(k, screw, value, _WRENCH))
+            parts = range(1, len(rows) + 1)
+            moments.append([self._moment_part(k, i, screw, columns) for i in parts])
         return duals, moments
 
+    def _moment_part(self, k: int, i: int, screw: _Screw, columns: tuple[Any, Any]) -> Any:
+        value = DualScalar(sp.Integer(k - 1), sp.Integer(i - 1), *columns)
+        name = screw.stem.replace("#", str(screw.number))
+        return self.eq("m#_%", value, i, name, k, unit=_MOMENT_PART[screw.is_angle])
+
+    def _reciprocal(self, k: int, screw: _Screw, value: Any, facts: dict[str, str]) -> Any:
+        """Vector k reciprocal to the others."""
+        told = {name: text.format(k=k) for name, text in facts.items()}
+        unit, joint, body = _FORCE_PART[screw.is_angle], screw.joint, self.tip_frame()
+        return self.eq(
+            screw.stem, value, screw.number, k, unit=unit, joint=joint, body=body, **told
+        )
+
     def _define_duals(self, vectors: list[Any], screws: list[_Screw]) -> list[Any]:
-        book, g = self.book, self.g
-        duals = []
-        planar = len(vectors) == 2
-        if planar:
-            normal = plane_normal(book, g)
+        if len(vectors) == 2:
+            normal = plane_normal(self.book, self.g)
             others = [(vectors[1], normal), (normal, vectors[0])]
         else:
             others = [(vectors[(k + 1) % 3], vectors[(k + 2) % 3]) for k in range(3)]
-        for k, (vector, screw) in enumerate(zip(vectors, screws, strict=True)):
-            across = Cross(*others[k])
-            duals.append(
-                book.define(
-                    g.name(screw.stem),
-                    across / Dot(vector, across),
-                    screw.latex,
-                    f"reciprocal vector {k + 1}",
-                    Law.RECIPROCITY,
-                    unit=_FORCE_PART[screw.is_angle],
-                    body=self.tip_frame(),
-                    reference="Sec. 2.3",
-                    role=Role.RECIPROCAL,
-                    joint=screw.joint,
-                )
-            )
-        return duals
+        across = [Cross(*pair) for pair in others]
+        return [
+            self._reciprocal(k, screw, a / Dot(v, a), {})
+            for k, (v, a, screw) in enumerate(zip(vectors, across, screws, strict=True), 1)
+        ]
 
     def _left_out(self, joints: list[int], missing: int, freedoms: Freedoms) -> list[LeftOut]:
         """Wrenches that do no work along the leg's freedoms."""
@@ -394,56 +391,19 @@ class MotionWriter:
         return [LeftOut(normal) for normal in normals]
 
     def _rates(self) -> None:
-        g, book, motion = self.g, self.book, self.motion
+        g, motion = self.g, self.motion
         extras = [j for j in range(1, g.count + 1) if g.is_extra(j)]
         target: Vector = self.S_dot
         turning: Vector = self.p.omega
         for j in extras:
-            name = g.name(f"yd_{j}")
-            book.note_quantity(
-                Quantity(
-                    name,
-                    rf"\dot y_{{{j}}}",
-                    f"rate of extra joint {j}",
-                    f"{g.kind(j).unit}/s",
-                    role=Role.RATE,
-                    joint=j,
-                )
-            )
-            motion.qd[j] = sp.Symbol(name, real=True)
+            motion.qd[j] = self.eq.note("yd_#", j)
             target = target - motion.qd[j] * motion.v[j]
             turning = turning - motion.qd[j] * g.spin(j)
         if extras:
-            target = book.define(
-                g.name("S_dot_rest"),
-                target,
-                r"\dot{\mathbf S}'",
-                "velocity of the connection point left to the joints that are not extra",
-                Law.RATE,
-                unit="m/s",
-            )
-        turns = [
-            book.define(
-                g.name(f"eta_{k}"),
-                Dot(n, turning),
-                rf"\eta_{{{k}}}",
-                f"rate at which the joints turn along moment direction {k}",
-                Law.RATE,
-                unit="rad/s",
-            )
-            for k, n in enumerate(motion.n, 1)
-        ]
+            target = self.eq("S_dot_rest", target)
+        turns = [self.eq("eta_#", Dot(n, turning), k) for k, n in enumerate(motion.n, 1)]
         for j, dual in motion.w.items():
-            motion.qd[j] = book.define(
-                g.name(f"qd_{j}"),
-                Dot(dual, target) + self._resolved(j, turns),
-                rf"\dot q_{{{j}}}",
-                f"rate of joint {j}",
-                Law.RECIPROCITY,
-                unit=f"{g.kind(j).unit}/s",
-                role=Role.RATE,
-                joint=j,
-            )
+            motion.qd[j] = self.eq("qd_#", Dot(dual, target) + self._resolved(j, turns), j)
         self._angular_velocities()
 
     def _resolved(self, j: int, amounts: Sequence[Any]) -> Any:
@@ -451,7 +411,7 @@ class MotionWriter:
         return sp.Add(*(m * a for m, a in zip(self.motion.m.get(j, ()), amounts, strict=False)))
 
     def _angular_velocities(self) -> None:
-        g, book, motion = self.g, self.book, self.motion
+        g, motion = self.g, self.motion
         motion.omega[0], motion.spin[0] = ZeroVector, ZeroTensor
         motion.slide[0] = self._slide_velocity(0)
         for j in self.spans:
@@ -459,24 +419,9 @@ class MotionWriter:
                 continue
             previous = motion.omega[g.group[j - 1]]
             frame = g.frame("axes", j)
-            motion.omega[j] = book.define(
-                g.name(f"omega_{j}"),
-                previous + motion.qd[j] * g.spin(j),
-                rf"\boldsymbol\omega_{{{j}}}",
-                f"angular velocity of link {j}",
-                Law.RATE,
-                unit="rad/s",
-                body=frame,
-            )
-            motion.spin[j] = book.define(
-                g.name(f"W_{j}"),
-                Compose(Skew(motion.omega[j]), Skew(motion.omega[j])),
-                rf"\mathbf W_{{{j}}}",
-                f"centripetal tensor of link {j}",
-                Law.DEFINITION,
-                unit="1/s^2",
-                body=frame,
-                symmetric=True,
+            motion.omega[j] = self.eq("omega_#", previous + motion.qd[j] * g.spin(j), j, body=frame)
+            motion.spin[j] = self.eq(
+                "W_#", Compose(Skew(motion.omega[j]), Skew(motion.omega[j])), j, body=frame
             )
             motion.slide[j] = self._slide_velocity(j)
 
@@ -490,53 +435,25 @@ class MotionWriter:
 
     def acceleration(self) -> None:
         """Bias, accelerations of joints and links, and their linear forms."""
-        g, book, p, motion = self.g, self.book, self.p, self.motion
+        g, p, motion = self.g, self.p, self.motion
         q = g.platform_point
         motion.u_1 = ZeroVector
         if self.space.rotates:
-            motion.u_1 = book.define(
-                g.name("u_1"),
-                Cross(p.omega, Cross(p.omega, q)),
-                r"\mathbf u_1",
-                "centripetal acceleration of the connection point",
-                Law.RATE,
-                unit="m/s^2",
-                body="base",
-                forms=(p.spin @ q,),
-                reference="Eq. 23",
+            motion.u_1 = self.eq(
+                "u_1", Cross(p.omega, Cross(p.omega, q)), body="base", forms=(p.spin @ q,)
             )
-        motion.a_p = book.define(
-            g.name("a_p"),
-            p.t_ddot + Cross(p.alpha, q),
-            r"\mathbf a_p",
-            "acceleration of the connection point without its centripetal part",
-            Law.RATE,
-            unit="m/s^2",
-            body="base",
-            reference="Eq. 23",
-            role=Role.COLLECTED_ACCELERATION,
-        )
+        motion.a_p = self.eq("a_p", p.t_ddot + Cross(p.alpha, q), body="base")
         motion.unknowns.append(motion.a_p)
-        writer = LinearWriter(book, g, motion)
-        motion.S_ddot = book.define(
-            g.name("S_ddot"),
-            motion.a_p + motion.u_1,
-            r"\ddot{\mathbf S}",
-            "acceleration of the connection point",
-            Law.RATE,
-            unit="m/s^2",
-            body="base",
-            reference="Eq. 23",
-            forms=self._platform_form(),
-            role=Role.POINT_ACCELERATION,
+        motion.S_ddot = self.eq(
+            "S_ddot", motion.a_p + motion.u_1, body="base", forms=self._platform_form()
         )
         motion.known[motion.S_ddot] = linear_form(
             motion.a_p + motion.u_1, motion.unknowns, motion.known
         )
         bias = self._bias()
-        self._joint_accelerations(writer, bias)
-        self._angular_accelerations(writer)
-        self._origin_accelerations(writer)
+        self._joint_accelerations(bias)
+        self._angular_accelerations()
+        self._origin_accelerations()
 
     def _platform_form(self) -> tuple[Vector, ...]:
         """The same acceleration by the platform's acceleration tensor."""
@@ -548,7 +465,7 @@ class MotionWriter:
 
     def _bias(self) -> Vector:
         """Acceleration of the connection point at zero joint accelerations."""
-        g, book, motion = self.g, self.book, self.motion
+        g, motion = self.g, self.motion
         self.coriolis: dict[int, Vector] = {0: ZeroVector}
         beta = self.beta = {0: ZeroVector}
         terms: list[Vector] = []
@@ -557,23 +474,10 @@ class MotionWriter:
             if j:
                 previous = g.group[j - 1]
                 turned = motion.qd[j] * Cross(motion.omega[previous], g.spin(j))
-                if turned != ZeroVector:
-                    turned = book.define(
-                        g.name(f"zeta_{j}"),
-                        turned,
-                        rf"\boldsymbol\zeta_{{{j}}}",
-                        f"angular acceleration of link {j} from the turning of axis {j}",
-                        Law.RATE,
-                        unit="rad/s^2",
-                        body=g.frame("axes", j),
-                    )
+                turned = self.eq.named("zeta_#", turned, j, body=g.frame("axes", j))
                 self.coriolis[j] = turned
-                beta[j] = self._named_sum(
-                    f"beta_{j}",
-                    beta[previous] + turned,
-                    rf"\boldsymbol\beta_{{{j}}}",
-                    f"angular acceleration of link {j} at zero joint accelerations",
-                    g.frame("axes", j),
+                beta[j] = self.eq.named(
+                    "beta_#", beta[previous] + turned, j, body=g.frame("axes", j)
                 )
             span, omega = self.spans[j], motion.omega[j]
             centripetal = Cross(beta[j], span) + Cross(omega, Cross(omega, span))
@@ -584,125 +488,47 @@ class MotionWriter:
         total = vector_sum(terms)
         if total == ZeroVector:
             return ZeroVector
-        named: Vector = book.define(
-            g.name("bias"),
-            total,
-            r"\mathfrak b",
-            "acceleration of the connection point at zero joint accelerations",
-            Law.RATE,
-            unit="m/s^2",
-            body=self.tip_frame(),
-            forms=(vector_sum(forms),),
-            reference="Sec. 2.2",
-            role=Role.BIAS,
-        )
+        named: Vector = self.eq("bias", total, body=self.tip_frame(), forms=(vector_sum(forms),))
         return named
 
-    def _named_sum(self, stem: str, value: Vector, latex: str, title: str, frame: str) -> Vector:
-        if value == ZeroVector or isinstance(value, VectorSymbol):
-            return value
-        named: Vector = self.book.define(
-            self.g.name(stem), value, latex, title, Law.RATE, unit="rad/s^2", body=frame
-        )
-        return named
-
-    def _joint_accelerations(self, writer: LinearWriter, bias: Vector) -> None:
-        g, book, motion = self.g, self.book, self.motion
+    def _joint_accelerations(self, bias: Vector) -> None:
+        g, motion = self.g, self.motion
         target: Vector = motion.S_ddot - bias
         turning: Vector = self.p.alpha
         if motion.n and self.p.alpha != ZeroVector:
             motion.unknowns.append(self.p.alpha)
         for j in [j for j in range(1, g.count + 1) if g.is_extra(j)]:
-            name = g.name(f"ydd_{j}")
-            book.note_quantity(
-                Quantity(
-                    name,
-                    rf"\ddot y_{{{j}}}",
-                    f"acceleration of extra joint {j}",
-                    f"{g.kind(j).unit}/s^2",
-                    role=Role.JOINT_ACCELERATION,
-                    joint=j,
-                )
-            )
-            motion.ydd[j] = motion.qdd[j] = sp.Symbol(name, real=True)
+            motion.ydd[j] = motion.qdd[j] = self.eq.note("ydd_#", j)
             motion.unknowns.append(motion.ydd[j])
             target = target - motion.ydd[j] * motion.v[j]
             turning = turning - motion.ydd[j] * g.spin(j)
         if target != motion.S_ddot:
-            target = writer.define(
-                "rel",
-                target,
-                r"\ddot{\mathbf S}'",
-                "acceleration of the connection point left to the joint accelerations",
-                Law.RATE,
-                unit="m/s^2",
-                coefficient_latex=r"\mathbf E",
-                body=self.tip_frame(),
-            )
+            target = self.eq.collected("rel", target, body=self.tip_frame())
         motion.relative = target
         turns = [
-            writer.define(
-                f"etad_{k}",
-                Dot(n, turning) + nu,
-                rf"\dot\eta_{{{k}}}",
-                f"acceleration with which the joints turn along moment direction {k}",
-                Law.RATE,
-                unit="rad/s^2",
-                coefficient_latex=rf"\boldsymbol\eta_{{{k}}}",
-            )
+            self.eq.collected("etad_#", Dot(n, turning) + nu, k)
             for k, (n, nu) in enumerate(zip(motion.n, self._orientation_bias(), strict=True), 1)
         ]
         for j, dual in motion.w.items():
-            motion.qdd[j] = writer.define(
-                f"qdd_{j}",
-                Dot(dual, target) + self._resolved(j, turns),
-                rf"\ddot q_{{{j}}}",
-                f"acceleration of joint {j}",
-                Law.RECIPROCITY,
-                unit=f"{g.kind(j).unit}/s^2",
-                coefficient_latex=rf"\mathbf w_{{{j}}}",
-                reference="Eqs. 8, 9, 16",
-                role=Role.JOINT_ACCELERATION,
-                joint=j,
+            motion.qdd[j] = self.eq.collected(
+                "qdd_#", Dot(dual, target) + self._resolved(j, turns), j
             )
 
     def _orientation_bias(self) -> list[Any]:
         """Per moment direction, what its turning adds to the angular acceleration along it."""
-        g, book, motion, p = self.g, self.book, self.motion, self.p
+        g, motion, p = self.g, self.motion, self.p
         last = g.group[g.count]
         omega = motion.omega[last]
         found = []
         for k, ((link, platform), n) in enumerate(zip(g.pairs, motion.n, strict=True), 1):
             turning = Cross(Cross(omega, link), platform) + Cross(link, Cross(p.omega, platform))
-            rate = (
-                turning
-                if turning == ZeroVector
-                else book.define(
-                    g.name(f"nd_m{k}"),
-                    turning,
-                    rf"\dot{{\mathbf n}}_{{m{k}}}",
-                    f"rate of moment direction {k}",
-                    Law.RATE,
-                    unit="1/s",
-                    body=self.tip_frame(),
-                )
-            )
-            found.append(
-                book.define(
-                    g.name(f"nu_{k}"),
-                    Dot(rate, p.omega - omega) - Dot(n, self.beta[last]),
-                    rf"\nu_{{{k}}}",
-                    f"bias of the angular acceleration along moment direction {k}",
-                    Law.RATE,
-                    unit="rad/s^2",
-                    reference="Sec. 2.2, joint table",
-                )
-            )
+            rate = self.eq.named("nd_m#", turning, k, body=self.tip_frame())
+            found.append(self.eq("nu_#", Dot(rate, p.omega - omega) - Dot(n, self.beta[last]), k))
         motion.nu = found
         return found
 
-    def _angular_accelerations(self, writer: LinearWriter) -> None:
-        g, book, motion = self.g, self.book, self.motion
+    def _angular_accelerations(self) -> None:
+        g, motion = self.g, self.motion
         motion.alpha[0] = ZeroVector
         motion.acceleration_tensor[0] = (ZeroTensor, ZeroTensor)
         for j in self.spans:
@@ -711,34 +537,19 @@ class MotionWriter:
             previous = motion.alpha[g.group[j - 1]]
             frame = g.frame("axes", j)
             rhs = previous + motion.qdd[j] * g.spin(j) + self.coriolis[j]
-            motion.alpha[j] = writer.define(
-                f"alpha_{j}",
+            motion.alpha[j] = self.eq.collected(
+                "alpha_#",
                 rhs,
-                rf"\boldsymbol\alpha_{{{j}}}",
-                f"angular acceleration of link {j}",
-                Law.RATE,
-                unit="rad/s^2",
-                coefficient_latex=rf"\boldsymbol\Omega_{{{j}}}",
+                j,
                 body=frame,
                 collected=not g.composite or j == g.group[g.count],
                 accelerated=self._turning(j),
             )
-            tensors = []
             rest = motion.known[motion.alpha[j]].remainder
-            for mark, alpha in (("", motion.alpha[j]), ("_o", rest)):
-                circle = r"^{\circ}" if mark else ""
-                tensors.append(
-                    book.define(
-                        g.name(f"B_{j}") + mark,
-                        Skew(alpha) + motion.spin[j],
-                        rf"\mathbf B{circle}_{{{j}}}",
-                        f"{'remainder of the ' if mark else ''}acceleration tensor of link {j}",
-                        Law.DEFINITION,
-                        unit="1/s^2",
-                        body=frame,
-                    )
-                )
-            motion.acceleration_tensor[j] = (tensors[0], tensors[1])
+            motion.acceleration_tensor[j] = (
+                self.eq("B_#", Skew(motion.alpha[j]) + motion.spin[j], j, body=frame),
+                self.eq("B_#_o", Skew(rest) + motion.spin[j], j, body=frame),
+            )
 
     def _turning(self, group: int) -> Any:
         """What of the last link's angular acceleration the inertia at the tip needs."""
@@ -770,7 +581,7 @@ class MotionWriter:
             vector_sum((rest, tensor_rest @ reach, coriolis, sliding_rest)),
         )
 
-    def _origin_accelerations(self, writer: LinearWriter) -> None:
+    def _origin_accelerations(self) -> None:
         """Accelerations of the groups' origins, outwards (the last link is seen from the tip)."""
         g, motion = self.g, self.motion
         order = list(self.spans)
@@ -781,14 +592,10 @@ class MotionWriter:
             if rhs == ZeroVector or isinstance(rhs, VectorSymbol):
                 motion.origin_acceleration[j] = rhs
                 continue
-            motion.origin_acceleration[j] = writer.define(
-                f"a_o{j}",
+            motion.origin_acceleration[j] = self.eq.collected(
+                "a_o#",
                 rhs,
-                rf"\mathbf a_{{o{j}}}",
-                f"acceleration of the origin of joint {j}",
-                Law.RATE,
-                unit="m/s^2",
-                coefficient_latex=rf"\mathbf V_{{{j}}}",
+                j,
                 body=g.frame("axes", previous),
                 forms=(form,),
                 rest_forms=(rest,),
