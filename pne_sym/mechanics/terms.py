@@ -167,7 +167,9 @@ class Writer:
             term.unit.replace("U", self.g.kind(numbers[0]).unit) if "U" in term.unit else term.unit
         )
 
-    def give(self, stem: str, frame: str, components: Iterable[Any], *numbers: Any) -> Any:
+    def give(
+        self, stem: str, frame: str, components: Iterable[Any], *numbers: Any
+    ) -> VectorSymbol:
         """Introduce a vector with its components, fixed in a frame; returns its symbol."""
         symbol = VectorSymbol(self._name(stem, numbers))
         self.book.give(symbol, frame, tuple(components), self._quantity(stem, frame, numbers))
