@@ -48,12 +48,13 @@ class Term:
     def numbered(self, numbers: Sequence[Any]) -> Term:
         """With numbers in the places of the marks."""
         latex, coefficient, meaning = (
-            _filled(text, numbers) for text in (self.latex, self.coefficient, self.meaning)
+            filled(text, numbers) for text in (self.latex, self.coefficient, self.meaning)
         )
         return replace(self, latex=latex, coefficient=coefficient, meaning=meaning)
 
 
-def _filled(text: str, numbers: Sequence[Any]) -> str:
+def filled(text: str, numbers: Sequence[Any]) -> str:
+    """A text with numbers, or words, in the places of the marks."""
     for mark, number in zip(_MARKS, numbers, strict=False):
         text = text.replace(mark, str(number))
     return text
@@ -136,11 +137,11 @@ class Writer:
         latex, title, law, told = self._told(stem, numbers, facts)
         del told["parameter"], told["symmetric"]
         told["coefficient_latex"] = term.coefficient
-        return self.collect(_filled(stem, numbers), rhs, latex, title, law, **told)
+        return self.collect(filled(stem, numbers), rhs, latex, title, law, **told)
 
     def _name(self, stem: str, numbers: Sequence[Any]) -> str:
         """The name in this leg type; the mark of a remainder comes last."""
-        plain = _filled(stem, numbers).partition(":")[0]
+        plain = filled(stem, numbers).partition(":")[0]
         return self.g.name(plain.removesuffix("_o")) + "_o" * plain.endswith("_o")
 
     def _told(
@@ -167,9 +168,7 @@ class Writer:
             term.unit.replace("U", self.g.kind(numbers[0]).unit) if "U" in term.unit else term.unit
         )
 
-    def give(
-        self, stem: str, frame: str, components: Iterable[Any], *numbers: Any
-    ) -> VectorSymbol:
+    def give(self, stem: str, frame: str, components: Iterable[Any], *numbers: Any) -> VectorSymbol:
         """Introduce a vector with its components, fixed in a frame; returns its symbol."""
         symbol = VectorSymbol(self._name(stem, numbers))
         self.book.give(symbol, frame, tuple(components), self._quantity(stem, frame, numbers))
