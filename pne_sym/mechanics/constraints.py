@@ -5,6 +5,7 @@ Reference: section 3.7, Eqs. 35 to 37.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -44,7 +45,12 @@ mu_c | \mu_c |  | GEOMETRY | Eq. 35
 
 
 def directions_left_out(
-    book: Book, g: LegGeometry, motion: Any, joints: list[int], missing: int, planar: bool
+    book: Book,
+    g: LegGeometry,
+    v: Mapping[int, Vector],
+    joints: list[int],
+    missing: int,
+    planar: bool,
 ) -> list[Vector]:
     """Unit vectors perpendicular to all velocity vectors v_j of a leg.
 
@@ -53,13 +59,13 @@ def directions_left_out(
     """
     axis = axis_across(g, joints)
     if planar:
-        return [_unit(book, g, "n_c", Cross(plane_normal(book, g), motion.v[joints[0]]))]
+        return [_unit(book, g, "n_c", Cross(plane_normal(book, g), v[joints[0]]))]
     if missing == 1:
         if axis is not None:
             return [axis]
-        first, second = (motion.v[j] for j in joints)
+        first, second = (v[j] for j in joints)
         return [_unit(book, g, "n_c", Cross(first, second))]
-    (only,) = (motion.v[j] for j in joints)
+    (only,) = (v[j] for j in joints)
     if axis is None:
         auxiliary = direction(book, g, g.completion[0].number, g.frame("axes", g.group[g.count]))
         axis = _unit(book, g, "n_c1", Cross(auxiliary, only))
@@ -79,19 +85,19 @@ def plane_normal(book: Book, g: LegGeometry) -> Vector:
 
 
 def wrenches_left_out(
-    book: Book, g: LegGeometry, motion: Any, joints: list[int], freedoms: Freedoms
+    book: Book, g: LegGeometry, v: Mapping[int, Vector], joints: list[int], freedoms: Freedoms
 ) -> list[LeftOut]:
     """Wrenches that do no work along a leg that transmits moments.
 
     Three joints and one moment have a formula of their own, without auxiliary directions.
     """
-    if len(motion.n) != 1 or len(joints) != 3:
+    if len(freedoms.directions) != 1 or len(joints) != 3:
         return completed_wrenches(book, g, g.completion, freedoms)
-    (n,) = motion.n
-    across = [Cross(motion.v[joints[(k + 1) % 3]], motion.v[joints[(k + 2) % 3]]) for k in range(3)]
+    (n,) = freedoms.directions
+    across = [Cross(v[joints[(k + 1) % 3]], v[joints[(k + 2) % 3]]) for k in range(3)]
     parts = [-Dot(g.spin(j), n) * a for j, a in zip(joints, across, strict=True) if g.turns(j)]
     frame = g.frame("axes", g.group[g.count])
-    volume = Dot(motion.v[joints[0]], across[0])
+    volume = Dot(v[joints[0]], across[0])
     turning = sum(g.kind(j).is_angle for j in joints)  # velocity vectors are lengths there
     if g.pure_moment:
         return [_per_unit_moment(book, g, vector_sum(parts), volume, turning, frame, n)]

@@ -21,7 +21,7 @@ from pne_sym.mechanics.constraints import (
 )
 from pne_sym.mechanics.inverse_kinematics import InverseKinematics
 from pne_sym.mechanics.leg_geometry import LegGeometry
-from pne_sym.mechanics.linear_writer import LegMotion, LinearWriter
+from pne_sym.mechanics.linear_writer import Collection, LegMotion, LegRates, LegScrews, LinearWriter
 from pne_sym.mechanics.platform_motion import PlatformMotion
 from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.model.kinematics import TaskSpace
@@ -157,6 +157,26 @@ class _Screw:
         return self.number if self.stem == "w_#" else 0
 
 
+@dataclass(frozen=True)
+class _Bias:
+    """Accelerations at zero joint accelerations.
+
+    Attributes:
+        point: of the connection point.
+        coriolis: angular, from the turning of the group's axis, by group.
+        beta: angular, by group.
+    """
+
+    point: Vector
+    coriolis: dict[int, Vector]
+    beta: dict[int, Vector]
+
+
+def _resolved(screws: LegScrews, j: int, amounts: Sequence[Any]) -> Any:
+    """Part of joint j in what turns along the moment directions."""
+    return sp.Add(*(m * a for m, a in zip(screws.m.get(j, ()), amounts, strict=False)))
+
+
 class MotionWriter:
     """Writes rates and accelerations of a leg."""
 
@@ -173,8 +193,7 @@ class MotionWriter:
         self.x = inverse.x
         self.S = inverse.S
         self.is_closed = inverse.is_closed
-        self.motion = LegMotion()
-        self.eq = Writer(book, g, _TERMS, LinearWriter(book, g, self.motion).define)
+        self.eq = Writer(book, g, _TERMS)
 
     def write(self, prefix: str) -> LegMotion:
         """Write the chapters on rates and accelerations."""
@@ -182,7 +201,7 @@ class MotionWriter:
         self.book.chapter(
             f"{prefix}-V", f"Rates of a {leg_type.architecture} leg", _RATES, leg_type.name
         )
-        self.velocity()
+        rates = self.velocity()
         self.book.chapter(
             f"{prefix}-A",
             f"Accelerations of a {leg_type.architecture} leg",
@@ -192,8 +211,7 @@ class MotionWriter:
             + _TENSOR,
             leg_type.name,
         )
-        self.acceleration()
-        return self.motion
+        return self.acceleration(rates)
 
     def _other_accelerations(self) -> str:
         """Which accelerations are collected besides that of the connection point."""
@@ -252,25 +270,22 @@ class MotionWriter:
 
     # ---- rates -----------------------------------------------------------------------
 
-    def velocity(self) -> None:
+    def velocity(self) -> LegRates:
         """Velocity of the connection point, joint screws, reciprocal wrenches, rates."""
         g, p = self.g, self.p
-        self.S_dot = self.eq("S_dot", p.t_dot + Cross(p.omega, g.platform_point), body="base")
+        S_dot = self.eq("S_dot", p.t_dot + Cross(p.omega, g.platform_point), body="base")
         turning = [j for j in range(1, g.count + 1) if g.turns(j)]
         self.spans = {group: self.span(group) for group in [0, *turning]}
         rods: dict[int, Vector] = {}
         following: Vector = ZeroVector
         for j in reversed(turning):
             following = rods[j] = self._rod(j, following)
-        for j in range(1, g.count + 1):
-            self.motion.v[j] = self._velocity_vector(j, rods)
-        first = turning[0] if turning else None
-        reached = vector_sum((self.spans[0], rods[first] if first else ZeroVector))
+        v = {j: self._velocity_vector(j, rods) for j in range(1, g.count + 1)}
+        reached = vector_sum((self.spans[0], rods[turning[0]] if turning else ZeroVector))
         # Three joints with a closed form leave no gap, they miss right angles alone.
-        closes = self.is_closed and g.pairs and sum(not g.is_extra(j) for j in self.motion.v) == 3
-        self.motion.gap = ZeroVector if closes else self.S - reached
-        self._basis()
-        self._rates()
+        closes = self.is_closed and g.pairs and sum(not g.is_extra(j) for j in v) == 3
+        screws = self._basis(v, ZeroVector if closes else self.S - reached)
+        return self._angular_velocities(screws, self._rates(screws, S_dot))
 
     def _velocity_vector(self, j: int, rods: dict[int, Vector]) -> Vector:
         g = self.g
@@ -286,40 +301,60 @@ class MotionWriter:
         """Canonical frame of the last link."""
         return self.g.frame("axes", self.g.group[self.g.count])
 
-    def _basis(self) -> None:
+    def _basis(self, v: dict[int, Vector], gap: Vector) -> LegScrews:
         """Reciprocal wrenches; directions that the freedoms leave out complete the basis."""
-        g, motion = self.g, self.motion
+        g = self.g
         joints = [j for j in range(1, g.count + 1) if not g.is_extra(j)]
-        vectors: list[Any] = [motion.v[j] for j in joints]
+        vectors: list[Any] = [v[j] for j in joints]
         scales: list[Any] = [g.size * g.turn(j) if g.turns(j) else sp.S.One for j in joints]
-        self._moment_directions()
-        rows = [[Dot(g.spin(j), n) for j in joints] for n in motion.n]
+        directions = self._moment_directions()
+        rows = [[Dot(g.spin(j), n) for j in joints] for n in directions]
         missing = (2 if self.space.planar else 3) + len(rows) - len(joints)
         frame = self.tip_frame()
-        freedoms = Freedoms(list(vectors), [list(r) for r in rows], list(scales), motion.n, frame)
-        wrenches = self._left_out(joints, missing, freedoms)
-        motion.left_out = [wrench for wrench in wrenches if wrench.acts]
+        freedoms = Freedoms(list(vectors), [list(r) for r in rows], list(scales), directions, frame)
+        wrenches = self._left_out(v, joints, missing, freedoms)
         for wrench in wrenches:
             vectors.append(wrench.force)
             scales.append(g.size if wrench.of_moment else sp.S.One)
             for row, amount in zip(rows, wrench.amounts, strict=True):
                 row.append(amount)
-        screws = [
+        columns = [
             *(_Screw("w_#", j, g.kind(j).is_angle) for j in joints),
             *(_Screw("wn_#", k) for k in range(1, missing + 1)),
         ]
-        duals, moment_duals = (
-            self._define_wrenches(vectors, rows, screws)
+        duals, amounts = (
+            self._define_wrenches(vectors, rows, columns)
             if rows
-            else (self._define_duals(vectors, screws), [])
+            else (self._define_duals(vectors, columns), [])
         )
-        motion.w = dict(zip(joints, duals, strict=False))
-        for j, amounts in zip(joints, moment_duals, strict=False):
-            motion.m[j] = amounts
-            moment = vector_sum(m * n for m, n in zip(amounts, motion.n, strict=True))
-            motion.o[j] = motion.named[moment] = self.eq(
-                "o_#", moment, j, body=self.tip_frame(), unit=_MOMENT_PART[g.kind(j).is_angle]
-            )
+        o, named = self._moment_parts(joints, amounts, directions)
+        self._note_basis(vectors, duals, scales, rows, amounts)
+        w, m = (dict(zip(joints, parts, strict=False)) for parts in (duals, amounts))
+        left_out = [wrench for wrench in wrenches if wrench.acts]
+        return LegScrews(v, w, o, m, directions, left_out, gap, named)
+
+    def _moment_parts(
+        self, joints: list[int], amounts: list[list[Any]], directions: list[Any]
+    ) -> tuple[dict[int, Vector], dict[Any, Any]]:
+        """Moment parts of the reciprocal wrenches by joint, and what has these names."""
+        o: dict[int, Vector] = {}
+        named: dict[Any, Any] = {}
+        for j, own in zip(joints, amounts, strict=False):
+            moment = vector_sum(m * n for m, n in zip(own, directions, strict=True))
+            unit = _MOMENT_PART[self.g.kind(j).is_angle]
+            o[j] = named[moment] = self.eq("o_#", moment, j, body=self.tip_frame(), unit=unit)
+        return o, named
+
+    def _note_basis(
+        self,
+        vectors: list[Any],
+        duals: list[Any],
+        scales: list[Any],
+        rows: list[list[Any]],
+        amounts: list[list[Any]],
+    ) -> None:
+        """Tell the lowering what is reciprocal to what."""
+        g = self.g
         frames = tuple(dict.fromkeys(g.frame("axes", g.group[j]) for j in range(g.count, -1, -1)))
         self.book.bases.append(
             ReciprocalBasis(
@@ -329,15 +364,18 @@ class MotionWriter:
                 tuple(scales),
                 frames,
                 tuple(tuple(row) for row in rows),
-                tuple(tuple(m) for m in moment_duals),
+                tuple(tuple(m) for m in amounts),
                 g.size,
             )
         )
 
-    def _moment_directions(self) -> None:
+    def _moment_directions(self) -> list[Any]:
         """Directions of the moments that the platform joint transmits."""
-        for k, (link, platform) in enumerate(self.g.pairs, 1):
-            self.motion.n.append(self.eq("n_m#", Cross(link, platform), k, body=self.tip_frame()))
+        frame = self.tip_frame()
+        return [
+            self.eq("n_m#", Cross(link, platform), k, body=frame)
+            for k, (link, platform) in enumerate(self.g.pairs, 1)
+        ]
 
     def _define_wrenches(
         self, vectors: list[Any], rows: list[list[Any]], screws: list[_Screw]
@@ -377,83 +415,74 @@ class MotionWriter:
             for k, (v, a, screw) in enumerate(zip(vectors, across, screws, strict=True), 1)
         ]
 
-    def _left_out(self, joints: list[int], missing: int, freedoms: Freedoms) -> list[LeftOut]:
+    def _left_out(
+        self, v: dict[int, Vector], joints: list[int], missing: int, freedoms: Freedoms
+    ) -> list[LeftOut]:
         """Wrenches that do no work along the leg's freedoms."""
+        book, g = self.book, self.g
         if missing == 0:
             return []
-        if not all(auxiliary.acts for auxiliary in self.g.completion):
-            return completed_wrenches(self.book, self.g, self.g.completion, freedoms)
-        if self.motion.n:
-            return wrenches_left_out(self.book, self.g, self.motion, joints, freedoms)
-        normals = directions_left_out(
-            self.book, self.g, self.motion, joints, missing, self.space.planar
-        )
+        if not all(auxiliary.acts for auxiliary in g.completion):
+            return completed_wrenches(book, g, g.completion, freedoms)
+        if freedoms.directions:
+            return wrenches_left_out(book, g, v, joints, freedoms)
+        normals = directions_left_out(book, g, v, joints, missing, self.space.planar)
         return [LeftOut(normal) for normal in normals]
 
-    def _rates(self) -> None:
-        g, motion = self.g, self.motion
-        extras = [j for j in range(1, g.count + 1) if g.is_extra(j)]
-        target: Vector = self.S_dot
-        turning: Vector = self.p.omega
-        for j in extras:
-            motion.qd[j] = self.eq.note("yd_#", j)
-            target = target - motion.qd[j] * motion.v[j]
-            turning = turning - motion.qd[j] * g.spin(j)
-        if extras:
+    def _rates(self, screws: LegScrews, S_dot: Vector) -> dict[int, Any]:
+        """Joint rates."""
+        qd: dict[int, Any] = {}
+        target, turning = S_dot, self.p.omega
+        for j in self._extras():
+            qd[j] = self.eq.note("yd_#", j)
+            target = target - qd[j] * screws.v[j]
+            turning = turning - qd[j] * self.g.spin(j)
+        if qd:
             target = self.eq("S_dot_rest", target)
-        turns = [self.eq("eta_#", Dot(n, turning), k) for k, n in enumerate(motion.n, 1)]
-        for j, dual in motion.w.items():
-            motion.qd[j] = self.eq("qd_#", Dot(dual, target) + self._resolved(j, turns), j)
-        self._angular_velocities()
+        turns = [self.eq("eta_#", Dot(n, turning), k) for k, n in enumerate(screws.n, 1)]
+        for j, dual in screws.w.items():
+            qd[j] = self.eq("qd_#", Dot(dual, target) + _resolved(screws, j, turns), j)
+        return qd
 
-    def _resolved(self, j: int, amounts: Sequence[Any]) -> Any:
-        """Part of joint j in what turns along the moment directions."""
-        return sp.Add(*(m * a for m, a in zip(self.motion.m.get(j, ()), amounts, strict=False)))
+    def _extras(self) -> list[int]:
+        return [j for j in range(1, self.g.count + 1) if self.g.is_extra(j)]
 
-    def _angular_velocities(self) -> None:
-        g, motion = self.g, self.motion
-        motion.omega[0], motion.spin[0] = ZeroVector, ZeroTensor
-        motion.slide[0] = self._slide_velocity(0)
+    def _angular_velocities(self, screws: LegScrews, qd: dict[int, Any]) -> LegRates:
+        g, omega, spin = self.g, {0: ZeroVector}, {0: ZeroTensor}
         for j in self.spans:
             if j == 0:
                 continue
-            previous = motion.omega[g.group[j - 1]]
-            frame = g.frame("axes", j)
-            motion.omega[j] = self.eq("omega_#", previous + motion.qd[j] * g.spin(j), j, body=frame)
-            motion.spin[j] = self.eq(
-                "W_#", Compose(Skew(motion.omega[j]), Skew(motion.omega[j])), j, body=frame
-            )
-            motion.slide[j] = self._slide_velocity(j)
+            previous, frame = omega[g.group[j - 1]], g.frame("axes", j)
+            omega[j] = self.eq("omega_#", previous + qd[j] * g.spin(j), j, body=frame)
+            spin[j] = self.eq("W_#", Compose(Skew(omega[j]), Skew(omega[j])), j, body=frame)
+        slide = {group: self._slide_velocity(group, qd) for group in self.spans}
+        return LegRates(**vars(screws), qd=qd, omega=omega, spin=spin, slide=slide)
 
-    def _slide_velocity(self, group: int) -> Vector:
+    def _slide_velocity(self, group: int, qd: dict[int, Any]) -> Vector:
         """Velocity of sliding within a group."""
-        g = self.g
-        members = (j for j in range(1, g.count + 1) if g.group[j] == group)
-        return vector_sum(self.motion.qd[j] * g.slide(j) for j in members)
+        members = (j for j in range(1, self.g.count + 1) if self.g.group[j] == group)
+        return vector_sum(qd[j] * self.g.slide(j) for j in members)
 
     # ---- accelerations ---------------------------------------------------------------
 
-    def acceleration(self) -> None:
+    def acceleration(self, rates: LegRates) -> LegMotion:
         """Bias, accelerations of joints and links, and their linear forms."""
-        g, p, motion = self.g, self.p, self.motion
-        q = g.platform_point
-        motion.u_1 = ZeroVector
+        g, p = self.g, self.p
+        u_1: Vector = ZeroVector
         if self.space.rotates:
-            motion.u_1 = self.eq(
-                "u_1", Cross(p.omega, Cross(p.omega, q)), body="base", forms=(p.spin @ q,)
-            )
-        motion.a_p = self.eq("a_p", p.t_ddot + Cross(p.alpha, q), body="base")
-        motion.unknowns.append(motion.a_p)
-        motion.S_ddot = self.eq(
-            "S_ddot", motion.a_p + motion.u_1, body="base", forms=self._platform_form()
-        )
-        motion.known[motion.S_ddot] = linear_form(
-            motion.a_p + motion.u_1, motion.unknowns, motion.known
-        )
-        bias = self._bias()
-        self._joint_accelerations(bias)
-        self._angular_accelerations()
-        self._origin_accelerations()
+            q, forms = g.platform_point, (p.spin @ g.platform_point,)
+            u_1 = self.eq("u_1", Cross(p.omega, Cross(p.omega, q)), body="base", forms=forms)
+        a_p = self.eq("a_p", p.t_ddot + Cross(p.alpha, g.platform_point), body="base")
+        collection = Collection(a_p, [a_p], {}, rates.named)
+        self.eq.collect = LinearWriter(self.book, g, collection).define
+        S_ddot = self.eq("S_ddot", a_p + u_1, body="base", forms=self._platform_form())
+        collection.known[S_ddot] = linear_form(a_p + u_1, [a_p], {})
+        bias = self._bias(rates)
+        motion = self._joint_accelerations(rates, collection, S_ddot, bias)
+        self._angular_accelerations(motion, bias)
+        self.motion = motion
+        self._origin_accelerations(motion)
+        return motion
 
     def _platform_form(self) -> tuple[Vector, ...]:
         """The same acceleration by the platform's acceleration tensor."""
@@ -461,89 +490,95 @@ class MotionWriter:
             return ()
         return (self.p.t_ddot + self.p.tensor @ self.g.platform_point,)
 
-    beta: dict[int, Vector]
-
-    def _bias(self) -> Vector:
-        """Acceleration of the connection point at zero joint accelerations."""
-        g, motion = self.g, self.motion
-        self.coriolis: dict[int, Vector] = {0: ZeroVector}
-        beta = self.beta = {0: ZeroVector}
+    def _bias(self, rates: LegRates) -> _Bias:
+        """Accelerations at zero joint accelerations."""
+        g = self.g
+        coriolis: dict[int, Vector] = {0: ZeroVector}
+        beta: dict[int, Vector] = {0: ZeroVector}
         terms: list[Vector] = []
         forms: list[Vector] = []
         for j in self.spans:
             if j:
-                previous = g.group[j - 1]
-                turned = motion.qd[j] * Cross(motion.omega[previous], g.spin(j))
-                turned = self.eq.named("zeta_#", turned, j, body=g.frame("axes", j))
-                self.coriolis[j] = turned
-                beta[j] = self.eq.named(
-                    "beta_#", beta[previous] + turned, j, body=g.frame("axes", j)
-                )
-            span, omega = self.spans[j], motion.omega[j]
-            centripetal = Cross(beta[j], span) + Cross(omega, Cross(omega, span))
-            coriolis = Cross(omega, motion.slide[j]) * 2
-            terms.extend((centripetal, coriolis))
-            tensor = Skew(beta[j]) + motion.spin[j]
-            forms.extend((tensor @ span if tensor != ZeroTensor else ZeroVector, coriolis))
-        total = vector_sum(terms)
-        if total == ZeroVector:
-            return ZeroVector
-        named: Vector = self.eq("bias", total, body=self.tip_frame(), forms=(vector_sum(forms),))
-        return named
+                previous, frame = g.group[j - 1], g.frame("axes", j)
+                turned = rates.qd[j] * Cross(rates.omega[previous], g.spin(j))
+                coriolis[j] = self.eq.named("zeta_#", turned, j, body=frame)
+                beta[j] = self.eq.named("beta_#", beta[previous] + coriolis[j], j, body=frame)
+            span, omega = self.spans[j], rates.omega[j]
+            sliding = Cross(omega, rates.slide[j]) * 2
+            terms.extend((Cross(beta[j], span) + Cross(omega, Cross(omega, span)), sliding))
+            tensor = Skew(beta[j]) + rates.spin[j]
+            forms.extend((tensor @ span if tensor != ZeroTensor else ZeroVector, sliding))
+        total, seen = vector_sum(terms), (vector_sum(forms),)
+        point: Vector = ZeroVector
+        if total != ZeroVector:
+            point = self.eq("bias", total, body=self.tip_frame(), forms=seen)
+        return _Bias(point, coriolis, beta)
 
-    def _joint_accelerations(self, bias: Vector) -> None:
-        g, motion = self.g, self.motion
-        target: Vector = motion.S_ddot - bias
+    def _joint_accelerations(
+        self, rates: LegRates, collection: Collection, S_ddot: Vector, bias: _Bias
+    ) -> LegMotion:
+        """Accelerations of the joints; those of links and origins are still to be found."""
+        g, qdd = self.g, {}
+        target: Vector = S_ddot - bias.point
         turning: Vector = self.p.alpha
-        if motion.n and self.p.alpha != ZeroVector:
-            motion.unknowns.append(self.p.alpha)
-        for j in [j for j in range(1, g.count + 1) if g.is_extra(j)]:
-            motion.ydd[j] = motion.qdd[j] = self.eq.note("ydd_#", j)
-            motion.unknowns.append(motion.ydd[j])
-            target = target - motion.ydd[j] * motion.v[j]
-            turning = turning - motion.ydd[j] * g.spin(j)
-        if target != motion.S_ddot:
+        if rates.n and self.p.alpha != ZeroVector:
+            collection.unknowns.append(self.p.alpha)
+        for j in self._extras():
+            qdd[j] = self.eq.note("ydd_#", j)
+            collection.unknowns.append(qdd[j])
+            target = target - qdd[j] * rates.v[j]
+            turning = turning - qdd[j] * g.spin(j)
+        ydd = dict(qdd)
+        if target != S_ddot:
             target = self.eq.collected("rel", target, body=self.tip_frame())
-        motion.relative = target
+        nu = self._orientation_bias(rates, bias.beta)
         turns = [
-            self.eq.collected("etad_#", Dot(n, turning) + nu, k)
-            for k, (n, nu) in enumerate(zip(motion.n, self._orientation_bias(), strict=True), 1)
+            self.eq.collected("etad_#", Dot(n, turning) + own, k)
+            for k, (n, own) in enumerate(zip(rates.n, nu, strict=True), 1)
         ]
-        for j, dual in motion.w.items():
-            motion.qdd[j] = self.eq.collected(
-                "qdd_#", Dot(dual, target) + self._resolved(j, turns), j
-            )
+        for j, dual in rates.w.items():
+            resolved = Dot(dual, target) + _resolved(rates, j, turns)
+            qdd[j] = self.eq.collected("qdd_#", resolved, j)
+        return LegMotion(
+            **vars(rates),
+            collection=collection,
+            S_ddot=S_ddot,
+            qdd=qdd,
+            ydd=ydd,
+            nu=nu,
+            relative=target,
+            alpha={0: ZeroVector},
+            acceleration_tensor={0: (ZeroTensor, ZeroTensor)},
+            origin_acceleration={0: ZeroVector},
+        )
 
-    def _orientation_bias(self) -> list[Any]:
+    def _orientation_bias(self, rates: LegRates, beta: dict[int, Vector]) -> list[Any]:
         """Per moment direction, what its turning adds to the angular acceleration along it."""
-        g, motion, p = self.g, self.motion, self.p
+        g, p = self.g, self.p
         last = g.group[g.count]
-        omega = motion.omega[last]
+        omega = rates.omega[last]
         found = []
-        for k, ((link, platform), n) in enumerate(zip(g.pairs, motion.n, strict=True), 1):
+        for k, ((link, platform), n) in enumerate(zip(g.pairs, rates.n, strict=True), 1):
             turning = Cross(Cross(omega, link), platform) + Cross(link, Cross(p.omega, platform))
             rate = self.eq.named("nd_m#", turning, k, body=self.tip_frame())
-            found.append(self.eq("nu_#", Dot(rate, p.omega - omega) - Dot(n, self.beta[last]), k))
-        motion.nu = found
+            found.append(self.eq("nu_#", Dot(rate, p.omega - omega) - Dot(n, beta[last]), k))
         return found
 
-    def _angular_accelerations(self) -> None:
-        g, motion = self.g, self.motion
-        motion.alpha[0] = ZeroVector
-        motion.acceleration_tensor[0] = (ZeroTensor, ZeroTensor)
+    def _angular_accelerations(self, motion: LegMotion, bias: _Bias) -> None:
+        g = self.g
         for j in self.spans:
             if j == 0:
                 continue
             previous = motion.alpha[g.group[j - 1]]
             frame = g.frame("axes", j)
-            rhs = previous + motion.qdd[j] * g.spin(j) + self.coriolis[j]
+            rhs = previous + motion.qdd[j] * g.spin(j) + bias.coriolis[j]
             motion.alpha[j] = self.eq.collected(
                 "alpha_#",
                 rhs,
                 j,
                 body=frame,
                 collected=not g.composite or j == g.group[g.count],
-                accelerated=self._turning(j),
+                accelerated=self._turning(motion, j),
             )
             rest = motion.known[motion.alpha[j]].remainder
             motion.acceleration_tensor[j] = (
@@ -551,19 +586,19 @@ class MotionWriter:
                 self.eq("B_#_o", Skew(rest) + motion.spin[j], j, body=frame),
             )
 
-    def _turning(self, group: int) -> Any:
+    def _turning(self, motion: LegMotion, group: int) -> Any:
         """What of the last link's angular acceleration the inertia at the tip needs."""
         g = self.g
         if not g.composite or group != g.group[g.count]:
             return None
-        return vector_sum(self.motion.qdd[j] * g.spin(j) for j in self.spans if j)
+        return vector_sum(motion.qdd[j] * g.spin(j) for j in self.spans if j)
 
     def point_acceleration(self, group: int, reach: Vector, slides: Sequence[int]) -> Any:
         """Acceleration of a point of a group: (rhs, form, form of the remainder)."""
         g, motion = self.g, self.motion
         omega = motion.omega[group]
         origin = motion.origin_acceleration[group]
-        rest = motion.known[origin].remainder if origin in motion.known else origin
+        rest = motion.collection.rest(origin)
         velocity = vector_sum(motion.qd[i] * g.slide(i) for i in slides)
         coriolis = Cross(omega, velocity) * 2
         sliding = vector_sum(motion.qdd[i] * g.slide(i) for i in slides)
@@ -581,11 +616,9 @@ class MotionWriter:
             vector_sum((rest, tensor_rest @ reach, coriolis, sliding_rest)),
         )
 
-    def _origin_accelerations(self) -> None:
+    def _origin_accelerations(self, motion: LegMotion) -> None:
         """Accelerations of the groups' origins, outwards (the last link is seen from the tip)."""
-        g, motion = self.g, self.motion
-        order = list(self.spans)
-        motion.origin_acceleration[order[0]] = ZeroVector
+        g, order = self.g, list(self.spans)
         for previous, j in pairwise(order):
             slides = [i for i in range(1, g.count + 1) if g.group[i] == previous and g.slides(i)]
             rhs, form, rest = self.point_acceleration(previous, self.spans[previous], slides)
