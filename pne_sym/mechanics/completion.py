@@ -97,6 +97,16 @@ class _State:
         return np.asarray(u[:, int(np.sum(values > _PURE)) :])
 
 
+def completion_of(
+    manipulator: Manipulator, g: LegGeometry, *, planar: bool
+) -> tuple[Auxiliary, ...]:
+    """What completes the freedoms of a leg in space that lacks some."""
+    freedoms = sum(not g.is_extra(j) for j in range(1, g.count + 1))
+    if planar or freedoms == 3 + len(g.pairs):
+        return ()
+    return completion_at_home(manipulator, g)
+
+
 def completion_at_home(manipulator: Manipulator, g: LegGeometry) -> tuple[Auxiliary, ...]:
     """The choice for which the worst conditioned leg of a type is conditioned best.
 

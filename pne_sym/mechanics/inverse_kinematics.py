@@ -43,7 +43,7 @@ class Branch:
     power: int
 
 
-@dataclass
+@dataclass(frozen=True)
 class InverseKinematics:
     """How each joint of a leg is found.
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -100,7 +100,7 @@ _FIELDS = {
 """Live parameters of a leg: path in the leg, shape, unit, meaning."""
 
 
-@dataclass
+@dataclass(frozen=True)
 class LegGeometry:
     """Symbols and frames of a leg type.
 
@@ -270,7 +270,12 @@ def build_geometry(book: Book, leg_type: LegType, suffix: str, planar: bool) -> 
     builder.offsets()
     builder.frames()
     builder.platform_joint()
-    return geometry
+    return replace(
+        geometry,
+        base_point=builder.base_point,
+        platform_point=builder.platform_point,
+        end_pattern=builder.end_pattern,
+    )
 
 
 class _Builder:
@@ -282,6 +287,9 @@ class _Builder:
         self.spec: dict[int, Any] = {}  # axis components in spec axes, by joint
         self.choice: dict[int, Any] = {}  # spec components of the direction behind x, by group
         self.c = geometry.canonical
+        self.base_point: Any = None
+        self.platform_point: Any = None
+        self.end_pattern: tuple[Any, ...] = ()
         self.eq = Writer(book, geometry, _TERMS)
 
     def field(self, stem: str, *numbers: Any, **facts: Any) -> tuple[sp.Expr, ...]:
@@ -305,8 +313,8 @@ class _Builder:
         p = self.field("platform_point", zeros=flat)
         if self.planar:  # legs of the plane keep z along the plane's normal
             frame = (*frame[:2], 0, *frame[3:5], 0, 0, 0, 1)
-        self.g.base_point = self.eq.give("b", "base", b)
-        self.g.platform_point = self.eq.give("q", "platform", p)
+        self.base_point = self.eq.give("b", "base", b)
+        self.platform_point = self.eq.give("q", "platform", p)
         self.book.frames.append(Frame(self.g.frame("spec", 0), "base", frame))
 
     def axes(self) -> None:
@@ -323,7 +331,7 @@ class _Builder:
                 (g.pitch[j],) = self.field("joint#_pitch", j, j - 1)
             group = j if g.turns(j) else group
             g.group[j] = group
-        g.axes_at = [self._axes_with(extra) for extra in self._extra_draws()]
+        g.axes_at.extend(self._axes_with(extra) for extra in self._extra_draws())
         self.book.parameters.relations.extend(axis_relations(self.type))
 
     def _extra_draws(self) -> list[dict[int, float]]:
@@ -573,7 +581,7 @@ class _Builder:
         u = self.eq.give("end_l#", last, link, k + 1)
         self.g.pairs.append((u, self._platform_direction(k, platform)))
         values = self.type.over_legs(lambda leg: leg.platform_joint.axis_link or _E[k])
-        self.g.end_pattern = _pattern(
+        self.end_pattern = _pattern(
             np.einsum("lji,lj->li", self.c[self.g.group[self.g.count]], values)
         )
 
