@@ -22,9 +22,10 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from pne_sym.derivation import Book, Condition, Law, Quantity, ReciprocalBasis, Trouble
+from pne_sym.derivation import Book, Condition, ReciprocalBasis, Trouble
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.scope import moment_directions
+from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.model.closure import least_norm, leg_gap
 from pne_sym.model.kinematics import TASK_SPACES, Array, Pose, chain_pose, displaced, pose_at
 from pne_sym.model.manipulator import Manipulator, Space
@@ -94,6 +95,16 @@ class _State:
         """Orthonormal wrenches (3 + k, c) that do no work along the freedoms."""
         u, values, _ = np.linalg.svd(self.freedoms)
         return np.asarray(u[:, int(np.sum(values > _PURE)) :])
+
+
+def completion_of(
+    manipulator: Manipulator, g: LegGeometry, *, planar: bool
+) -> tuple[Auxiliary, ...]:
+    """What completes the freedoms of a leg in space that lacks some."""
+    freedoms = sum(not g.is_extra(j) for j in range(1, g.count + 1))
+    if planar or freedoms == 3 + len(g.pairs):
+        return ()
+    return completion_at_home(manipulator, g)
 
 
 def completion_at_home(manipulator: Manipulator, g: LegGeometry) -> tuple[Auxiliary, ...]:
@@ -216,6 +227,28 @@ def _rank(rows: Array) -> int:
     return int(np.sum(np.linalg.svd(rows)[1] > _PURE)) if rows.size else 0
 
 
+_TERMS = glossary(r"""
+a_c# | \mathbf a_{c#} | - | given
+    coordinate direction of the last link, to complete the leg's freedoms
+t_c# | \mathbf t_{c#} | m | GEOMETRY
+    velocity of the connection point as it turns about the fixed centre
+f_c# | \mathbf f_{c#} |  | RECIPROCITY | Eq. 35
+    force part of the wrench that does no work along the leg's freedoms, #
+m#_c% | m_{c%#} |  | RECIPROCITY | Eq. 35
+    moment part # of the wrench that does no work along the leg's freedoms, %
+size_c# | \ell_{c#} |  | GEOMETRY
+    size of the %
+n_c# | \mathbf n_{c#} | - | GEOMETRY | Eq. 35
+    unit force that the leg's freedoms leave out
+n_c#:moment | \mathbf n_{c#} | 1/m | GEOMETRY | Eq. 35
+    force part, zero where the loops close, of the unit moment that the leg's freedoms leave out
+mu#_c% | \mu_{c%#} |  | GEOMETRY | Eq. 35
+    moment along direction # that goes with it
+mu_c# | \boldsymbol\mu_{c#} |  | GEOMETRY | Eq. 35
+    the moment that goes with it
+""")
+
+
 @dataclass(frozen=True)
 class LeftOut:
     """A wrench that does no work along a leg's freedoms: lambda is its amount.
@@ -291,15 +324,8 @@ def _column(
     a = direction(book, g, number, freedoms.frame)
     if auxiliary.kind is Kind.SLIDE:
         return a, [sp.S.Zero for _ in freedoms.rows]
-    velocity = book.define(
-        g.name(f"t_c{number + 1}"),
-        Cross(a, g.platform_point),
-        rf"\mathbf t_{{c{number + 1}}}",
-        "velocity of the connection point as it turns about the fixed centre",
-        Law.GEOMETRY,
-        unit="m",
-        body=freedoms.frame,
-    )
+    eq = Writer(book, g, _TERMS)
+    velocity = eq("t_c#", Cross(a, g.platform_point), number + 1, body=freedoms.frame)
     return velocity, [Dot(a, n) for n in freedoms.directions]
 
 
@@ -311,97 +337,48 @@ def _column_size(g: LegGeometry, auxiliary: Auxiliary) -> Any:
 def direction(book: Book, g: LegGeometry, axis: int, frame: str) -> VectorSymbol:
     """A coordinate direction of the last link."""
     symbol = VectorSymbol(g.name(f"a_c{axis + 1}"))
-    if symbol.name not in book.notation:
-        meaning = "coordinate direction of the last link, to complete the leg's freedoms"
-        latex = rf"\mathbf a_{{c{axis + 1}}}"
-        quantity = Quantity(symbol.name, latex, meaning, "-", frame, parameter=True)
-        book.give(symbol, frame, tuple(sp.Integer(int(i == axis)) for i in range(3)), quantity)
-    return symbol
+    if symbol.name in book.notation:
+        return symbol
+    components = (sp.Integer(int(i == axis)) for i in range(3))
+    return Writer(book, g, _TERMS).give("a_c#", frame, components, axis + 1)
 
 
-@dataclass(frozen=True)
 class _WrenchWriter:
     """Defines the wrenches reciprocal to auxiliary directions."""
 
-    book: Book
-    g: LegGeometry
-    directions: list[Any]
-    frame: str
+    def __init__(self, book: Book, g: LegGeometry, directions: list[Any], frame: str) -> None:
+        self.g, self.directions, self.frame = g, directions, frame
+        self.eq = Writer(book, g, _TERMS)
 
     def reciprocal(
         self, k: int, auxiliary: Auxiliary, screws: tuple[Any, Any], transmitted: int
     ) -> tuple[Any, tuple[Any, ...]]:
         """The reciprocal wrench of auxiliary direction k: force, moment amounts."""
-        slide = auxiliary.kind is Kind.SLIDE
-        what = f"of the wrench that does no work along the leg's freedoms, {k + 1}"
-        force = self.book.define(
-            self.g.name(f"f_c{k + 1}"),
-            DualVector(sp.Integer(k), *screws),
-            rf"\mathbf f_{{c{k + 1}}}",
-            f"force part {what}",
-            Law.RECIPROCITY,
-            unit="-" if slide else "1/m",
-            body=self.frame,
-            reference="Eq. 35",
+        of_force, of_moment = ("-", "m") if auxiliary.kind is Kind.SLIDE else ("1/m", "-")
+        value = DualVector(sp.Integer(k), *screws)
+        force = self.eq("f_c#", value, k + 1, unit=of_force, body=self.frame)
+        duals = (DualScalar(sp.Integer(k), sp.Integer(i), *screws) for i in range(transmitted))
+        return force, tuple(
+            self.eq("m#_c%", dual, i, k + 1, unit=of_moment) for i, dual in enumerate(duals, 1)
         )
-        amounts = tuple(
-            self.book.define(
-                self.g.name(f"m{i + 1}_c{k + 1}"),
-                DualScalar(sp.Integer(k), sp.Integer(i), *screws),
-                f"m_{{c{k + 1}{i + 1}}}",
-                f"moment part {i + 1} {what}",
-                Law.RECIPROCITY,
-                unit="m" if slide else "-",
-                reference="Eq. 35",
-            )
-            for i in range(transmitted)
-        )
-        return force, amounts
 
     def of_unit_size(
         self, k: int, auxiliary: Auxiliary, force: Any, amounts: tuple[Any, ...]
     ) -> LeftOut:
         """The same wrench for a force, or a moment, of size one."""
-        number, of_force = k + 1, auxiliary.of_force
+        number, acts, of_force = k + 1, auxiliary.acts, auxiliary.of_force
         size = self._size(number, auxiliary, force, amounts)
-        unit = self.book.define(
-            self.g.name(f"n_c{number}"),
-            force / size,
-            rf"\mathbf n_{{c{number}}}",
-            "unit force that the leg's freedoms leave out"
-            if of_force
-            else "force part, zero where the loops close, of the unit moment that the leg's "
-            "freedoms leave out",
-            Law.GEOMETRY,
-            unit="-" if of_force else "1/m",
-            body=self.frame,
-            reference="Eq. 35",
-        )
+        stem, unit = ("n_c#", "m") if of_force else ("n_c#:moment", "-")
+        n = self.eq(stem, force / size, number, body=self.frame)
         moments = tuple(
-            self.book.define(
-                self.g.name(f"mu{i}_c{number}"),
-                amount / size,
-                rf"\mu_{{c{number}{i}}}",
-                f"moment along direction {i} that goes with it",
-                Law.GEOMETRY,
-                unit="m" if of_force else "-",
-                reference="Eq. 35",
-            )
+            self.eq("mu#_c%", amount / size, i, number, unit=unit)
             for i, amount in enumerate(amounts, 1)
         )
         if not moments:
-            return LeftOut(unit, acts=auxiliary.acts, of_moment=not of_force)
-        moment = self.book.define(
-            self.g.name(f"mu_c{number}"),
-            _moment(moments, self.directions),
-            rf"\boldsymbol\mu_{{c{number}}}",
-            "the moment that goes with it",
-            Law.GEOMETRY,
-            unit="m" if of_force else "-",
-            body=self.frame,
-            reference="Eq. 35",
-        )
-        return LeftOut(unit, moments, moment, auxiliary.acts, not of_force)
+            return LeftOut(n, acts=acts, of_moment=not of_force)
+        total = vector_sum(m * n for m, n in zip(moments, self.directions, strict=True))
+        moment = self.eq("mu_c#", total, number, unit=unit, body=self.frame)
+        return LeftOut(n, moments, moment, acts, not of_force)
 
     def _size(self, number: int, auxiliary: Auxiliary, force: Any, amounts: tuple[Any, ...]) -> Any:
         """Size of the force, or of the moment: singular where it vanishes."""
@@ -410,21 +387,11 @@ class _WrenchWriter:
         else:
             size, what, slides_unit, turns_unit = _size(amounts), "moment", 1, 0
         power_of_length = slides_unit if auxiliary.kind is Kind.SLIDE else turns_unit
-        return self.book.define(
-            self.g.name(f"size_c{number}"),
-            size,
-            rf"\ell_{{c{number}}}",
-            f"size of the {what}",
-            Law.GEOMETRY,
-            unit={-1: "1/m", 0: "-", 1: "m"}[power_of_length],
-            conditions=(Condition(Trouble.SINGULAR, size, self.g.size**power_of_length),),
-        )
+        unit = {-1: "1/m", 0: "-", 1: "m"}[power_of_length]
+        regular = Condition(Trouble.SINGULAR, size, self.g.size**power_of_length)
+        return self.eq("size_c#", size, number, what, unit=unit, conditions=(regular,))
 
 
 def _size(amounts: tuple[Any, ...]) -> Any:
     """Size of a moment by its amounts along orthonormal directions; a single one keeps its sign."""
     return amounts[0] if len(amounts) == 1 else sp.sqrt(sp.Add(*(a**2 for a in amounts)))
-
-
-def _moment(amounts: tuple[Any, ...], directions: list[Any]) -> Vector:
-    return vector_sum(m * n for m, n in zip(amounts, directions, strict=True))

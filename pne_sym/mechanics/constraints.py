@@ -5,24 +5,52 @@ Reference: section 3.7, Eqs. 35 to 37.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import sympy as sp
 
-from pne_sym.derivation import Book, Condition, Law, Quantity, Trouble
+from pne_sym.derivation import Book, Condition, Trouble
 from pne_sym.mechanics.completion import Freedoms, LeftOut, completed_wrenches, direction
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.scope import moment_directions
+from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.model.kinematics import chain_pose, pose_at
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.vector import Cross, Dot, Vector, VectorSymbol, norm, vector_sum
 
 _POWERS_OF_METRE = ("-", "m", "m^2", "m^3")
 
+_TERMS = glossary(r"""
+n_plane | \mathbf n | - | given
+    normal of the plane
+n_c | \mathbf n_c |  | GEOMETRY | Eq. 35
+    unit vector that the leg's freedoms leave out
+n_c1 | \mathbf n_c |  | GEOMETRY | Eq. 35
+    unit vector that the leg's freedoms leave out
+f_c_part | \mathbf f'_c |  | GEOMETRY
+    force that with the moment does no work along the leg's freedoms
+f_c_size | \lVert\mathbf f'_c\rVert |  | GEOMETRY
+    its size
+n_c:force | \mathbf n_c |  | GEOMETRY | Eq. 35
+    unit force that the leg's freedoms leave out
+volume_c | \Delta_c |  | GEOMETRY
+    triple product of the velocity vectors
+n_c:moment | \mathbf n_c | 1/m | GEOMETRY | Eq. 35
+    force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+mu_c | \mu_c |  | GEOMETRY | Eq. 35
+    moment that goes with it
+""")
+
 
 def directions_left_out(
-    book: Book, g: LegGeometry, motion: Any, joints: list[int], missing: int, planar: bool
+    book: Book,
+    g: LegGeometry,
+    v: Mapping[int, Vector],
+    joints: list[int],
+    missing: int,
+    planar: bool,
 ) -> list[Vector]:
     """Unit vectors perpendicular to all velocity vectors v_j of a leg.
 
@@ -31,13 +59,13 @@ def directions_left_out(
     """
     axis = axis_across(g, joints)
     if planar:
-        return [_unit(book, g, "n_c", Cross(plane_normal(book, g), motion.v[joints[0]]))]
+        return [_unit(book, g, "n_c", Cross(plane_normal(book, g), v[joints[0]]))]
     if missing == 1:
         if axis is not None:
             return [axis]
-        first, second = (motion.v[j] for j in joints)
+        first, second = (v[j] for j in joints)
         return [_unit(book, g, "n_c", Cross(first, second))]
-    (only,) = (motion.v[j] for j in joints)
+    (only,) = (v[j] for j in joints)
     if axis is None:
         auxiliary = direction(book, g, g.completion[0].number, g.frame("axes", g.group[g.count]))
         axis = _unit(book, g, "n_c1", Cross(auxiliary, only))
@@ -51,67 +79,35 @@ def plane_normal(book: Book, g: LegGeometry) -> Vector:
         return turning[0]
     normal = VectorSymbol(g.name("n_plane"))
     if normal.name not in book.notation:
-        meaning = "normal of the plane"
-        frame = g.frame("spec", 0)
-        quantity = Quantity(normal.name, r"\mathbf n", meaning, "-", frame, parameter=True)
-        book.give(normal, frame, (sp.S.Zero, sp.S.Zero, sp.S.One), quantity)
+        along_z = sp.S.Zero, sp.S.Zero, sp.S.One
+        Writer(book, g, _TERMS).give("n_plane", g.frame("spec", 0), along_z)
     return normal
 
 
 def wrenches_left_out(
-    book: Book, g: LegGeometry, motion: Any, joints: list[int], freedoms: Freedoms
+    book: Book, g: LegGeometry, v: Mapping[int, Vector], joints: list[int], freedoms: Freedoms
 ) -> list[LeftOut]:
     """Wrenches that do no work along a leg that transmits moments.
 
     Three joints and one moment have a formula of their own, without auxiliary directions.
     """
-    if len(motion.n) != 1 or len(joints) != 3:
+    if len(freedoms.directions) != 1 or len(joints) != 3:
         return completed_wrenches(book, g, g.completion, freedoms)
-    (n,) = motion.n
-    across = [Cross(motion.v[joints[(k + 1) % 3]], motion.v[joints[(k + 2) % 3]]) for k in range(3)]
+    (n,) = freedoms.directions
+    across = [Cross(v[joints[(k + 1) % 3]], v[joints[(k + 2) % 3]]) for k in range(3)]
     parts = [-Dot(g.spin(j), n) * a for j, a in zip(joints, across, strict=True) if g.turns(j)]
     frame = g.frame("axes", g.group[g.count])
-    volume = Dot(motion.v[joints[0]], across[0])
+    volume = Dot(v[joints[0]], across[0])
     turning = sum(g.kind(j).is_angle for j in joints)  # velocity vectors are lengths there
     if g.pure_moment:
         return [_per_unit_moment(book, g, vector_sum(parts), volume, turning, frame, n)]
-    direction = book.define(
-        g.name("f_c_part"),
-        vector_sum(parts),
-        r"\mathbf f'_c",
-        "force that with the moment does no work along the leg's freedoms",
-        Law.GEOMETRY,
-        body=frame,
-        unit=_POWERS_OF_METRE[turning - 1],
-    )
+    eq, unit = Writer(book, g, _TERMS), _POWERS_OF_METRE[turning - 1]
+    direction = eq("f_c_part", vector_sum(parts), body=frame, unit=unit)
     squared = Dot(direction, direction)
-    length = book.define(
-        g.name("f_c_size"),
-        norm(direction),
-        r"\lVert\mathbf f'_c\rVert",
-        "its size",
-        Law.GEOMETRY,
-        unit=_POWERS_OF_METRE[turning - 1],
-        conditions=(Condition(Trouble.SINGULAR, squared, g.size ** (2 * turning - 2), 2),),
-    )
-    force = book.define(
-        g.name("n_c"),
-        direction / length,
-        r"\mathbf n_c",
-        "unit force that the leg's freedoms leave out",
-        Law.GEOMETRY,
-        body=frame,
-        reference="Eq. 35",
-    )
-    amount = book.define(
-        g.name("mu_c"),
-        volume / length,
-        r"\mu_c",
-        "moment that goes with it",
-        Law.GEOMETRY,
-        unit="m",
-        reference="Eq. 35",
-    )
+    regular = Condition(Trouble.SINGULAR, squared, g.size ** (2 * turning - 2), 2)
+    length = eq("f_c_size", norm(direction), unit=unit, conditions=(regular,))
+    force = eq("n_c:force", direction / length, body=frame)
+    amount = eq("mu_c", volume / length, unit="m")
     return [LeftOut(force, (amount,), amount * n)]
 
 
@@ -119,34 +115,10 @@ def _per_unit_moment(
     book: Book, g: LegGeometry, force: Vector, volume: Any, turning: int, frame: str, n: Vector
 ) -> LeftOut:
     """The same wrench per unit moment, for legs whose wrench has no force part at home."""
-    condition = Condition(Trouble.SINGULAR, volume, g.size**turning)
-    scale = book.define(
-        g.name("volume_c"),
-        volume,
-        r"\Delta_c",
-        "triple product of the velocity vectors",
-        Law.GEOMETRY,
-        unit=_POWERS_OF_METRE[turning],
-        conditions=(condition,),
-    )
-    direction: Vector = book.define(
-        g.name("n_c"),
-        force / scale,
-        r"\mathbf n_c",
-        "force part, zero on the manifold, of the unit moment that the leg's freedoms leave out",
-        Law.GEOMETRY,
-        body=frame,
-        unit="1/m",
-        reference="Eq. 35",
-    )
-    amount = book.define(
-        g.name("mu_c"),
-        sp.S.One,
-        r"\mu_c",
-        "moment that goes with it",
-        Law.GEOMETRY,
-        reference="Eq. 35",
-    )
+    eq, regular = Writer(book, g, _TERMS), Condition(Trouble.SINGULAR, volume, g.size**turning)
+    scale = eq("volume_c", volume, unit=_POWERS_OF_METRE[turning], conditions=(regular,))
+    direction: Vector = eq("n_c:moment", force / scale, body=frame)
+    amount = eq("mu_c", sp.S.One)
     return LeftOut(direction, (amount,), amount * n, of_moment=True)
 
 
@@ -182,13 +154,6 @@ def axis_across(g: LegGeometry, joints: list[int]) -> Vector | None:
 
 
 def _unit(book: Book, g: LegGeometry, stem: str, vector: Vector) -> Vector:
-    unit: Vector = book.define(
-        g.name(stem),
-        vector / norm(vector),
-        r"\mathbf n_c",
-        "unit vector that the leg's freedoms leave out",
-        Law.GEOMETRY,
-        body=g.frame("axes", g.group[g.count]),
-        reference="Eq. 35",
-    )
+    frame = g.frame("axes", g.group[g.count])
+    unit: Vector = Writer(book, g, _TERMS)(stem, vector / norm(vector), body=frame)
     return unit

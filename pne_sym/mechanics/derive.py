@@ -19,7 +19,7 @@ from pne_sym.derivation import (
 )
 from pne_sym.mechanics.actuation import actuation
 from pne_sym.mechanics.branches import branch_signs
-from pne_sym.mechanics.completion import completion_at_home
+from pne_sym.mechanics.completion import completion_of
 from pne_sym.mechanics.conditioning import write_lengths
 from pne_sym.mechanics.constraints import axis_across, force_vanishes
 from pne_sym.mechanics.inverse_kinematics import InverseKinematics, given_displacements, invert
@@ -32,7 +32,7 @@ from pne_sym.mechanics.notation import with_symbols
 from pne_sym.mechanics.orientation import orientation_rows, orientation_signs
 from pne_sym.mechanics.platform_dynamics import Leg, PlatformWriter
 from pne_sym.mechanics.platform_motion import PlatformMotion, introduce_platform
-from pne_sym.mechanics.scales import define_size, home_lengths
+from pne_sym.mechanics.scales import home_lengths, with_size
 from pne_sym.mechanics.scope import check_scope
 from pne_sym.mechanics.structure import LegType, leg_types
 from pne_sym.model.kinematics import TASK_SPACES, TaskSpace
@@ -115,13 +115,15 @@ def _derive_leg(
     prefix, title = leg_type.name, leg_type.architecture
     book.chapter(f"{prefix}-G", f"Geometry and inertia of a {title} leg", "", prefix)
     g = build_geometry(book, leg_type, suffix, space.planar)
-    define_size(book, g, home_lengths(manipulator, leg_type))
-    g.pure_moment = force_vanishes(manipulator, g)
+    g = with_size(book, g, home_lengths(manipulator, leg_type))
     bodies = introduce_bodies(book, g, space.planar)
     carried = any(body.at_tip for body in bodies)
     book.retext(_GEOMETRY.format(points=_AT_TIP if carried else "their joints"))
     # Links that all turn together are one body; else composite bodies cost less.
-    g.composite = len({body.group for body in bodies}) > 1
+    composite = len({body.group for body in bodies}) > 1
+    completion = completion_of(manipulator, g, planar=space.planar)
+    pure = force_vanishes(manipulator, g)
+    g = replace(g, composite=composite, completion=completion, pure_moment=pure)
     book.chapter(f"{prefix}-K", f"Inverse kinematics of a {title} leg", _INVERSE, prefix)
     inverse = _inverse_kinematics(book, manipulator, space, platform, g)
     book.leg_types.append(_info(leg_type, inverse, len(g.pairs)))
@@ -176,8 +178,6 @@ def _inverse_kinematics(
     S, x = _connection(book, platform, g)
     freedoms = [j for j in range(1, g.count + 1) if not g.is_extra(j)]
     constrained = (2 if space.planar else 3) + len(g.pairs) > len(freedoms)
-    if constrained and not space.planar:
-        g.completion = completion_at_home(manipulator, g)
     flat = constrained and not space.planar and not g.pairs
     normal = axis_across(g, freedoms) if flat else None
     before = book.mark()
@@ -186,7 +186,7 @@ def _inverse_kinematics(
         book.reset(before)
         book.retext(_ITERATED)
         inverse = given_displacements(book, g, inverse.reasons)
-    inverse.S = S
+    inverse = replace(inverse, S=S)
     signs = branch_signs(manipulator, g, inverse, book)
     for branch, of_legs in zip(inverse.branches, signs, strict=True):
         book.parameters.add_branch(branch.symbol.name, g.leg_type.name, of_legs)

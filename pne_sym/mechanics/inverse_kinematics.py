@@ -19,9 +19,10 @@ from typing import Any
 
 import sympy as sp
 
-from pne_sym.derivation import Book, Condition, Law, Quantity, Role, Trouble
+from pne_sym.derivation import Book, Condition, Law, Trouble
 from pne_sym.mechanics.leg_geometry import LegGeometry
-from pne_sym.vector import Cross, Dot, Vector, VectorSymbol, ZeroVector, vector_sum
+from pne_sym.mechanics.terms import Writer, glossary
+from pne_sym.vector import Cross, Dot, Vector, ZeroVector, vector_sum
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,7 @@ class Branch:
     power: int
 
 
-@dataclass
+@dataclass(frozen=True)
 class InverseKinematics:
     """How each joint of a leg is found.
 
@@ -105,36 +106,80 @@ def given_displacements(book: Book, g: LegGeometry, reasons: dict[int, str]) -> 
         if g.is_extra(j):
             solver._given(j, ZeroVector)
             continue
-        name = g.name(f"q_{j}")
-        book.note_quantity(
-            Quantity(
-                name,
-                f"q_{{{j}}}",
-                f"displacement of joint {j}, by iteration on the loop closure",
-                g.kind(j).unit,
-                role=Role.DISPLACEMENT,
-                joint=j,
-            )
-        )
-        solver.q[j] = sp.Symbol(name, real=True)
+        solver.q[j] = solver.eq.note("q_#:iterated", j)
         solver.methods[j] = "numeric"
         if g.turns(j):
             solver._angle_of_displacement(j)
     return InverseKinematics(solver.q, solver.methods, reasons, [], {})
 
 
+_ALONG_X, _ALONG_Y = (tuple(map(sp.Integer, axis)) for axis in ((1, 0, 0), (0, 1, 0)))
 # Units of x, of the direction u fixed in the link, and of u . x, by method.
 _UNITS = {
     "linear": ("m", "-", "m"),
     "sphere": ("m", "m", "m^2"),
     "orientation": ("-", "-", "-"),
 }
-# Constants of a link: symbol and meaning.
-_CONSTANTS = {
-    "un": ("u^x", "component along the x axis of link {j} of the direction fixed in it"),
-    "um": ("u^y", "component along the y axis of link {j} of the direction fixed in it"),
-    "uu": (r"\upsilon", "squared length, across the axis, of the direction fixed in link {j}"),
-}
+_TERMS = glossary(r"""
+x_# | \mathbf x_{#} | m | GEOMETRY
+    from the origin of joint # to the connection point
+y_#_extra | y_{#} | U | given DISPLACEMENT
+    extra coordinate: displacement of joint #
+q_#:iterated | q_{#} | U | given DISPLACEMENT
+    displacement of joint #, by iteration on the loop closure
+q_# | q_{#} | U | LOOP_CLOSURE DISPLACEMENT
+    displacement of joint #
+c_# | c_{#} |  | LOOP_CLOSURE
+    cosine of the angle of joint # from its reference direction
+s_# | s_{#} |  | LOOP_CLOSURE
+    sine of the angle of joint # from its reference direction
+branch_# | \sigma_{#} | - | given constant
+    assembly branch of joint #: +1 or -1, as at home
+ref_# | \hat{\mathbf x}^0_{#} | - | given
+    reference direction of the angle of joint #, fixed in link %
+across_# | \hat{\mathbf y}^0_{#} | - | given
+    across the reference direction of joint #, fixed in link %
+link_x_# | \hat{\mathbf x}_{#} | - | given
+    direction across axis #, fixed in link #
+link_y_# | \hat{\mathbf y}_{#} | - | given
+    direction across axis #, fixed in link #
+un_# | u^x_{#} |  | LUMPING
+    component along the x axis of link # of the direction fixed in it
+um_# | u^y_{#} |  | LUMPING
+    component along the y axis of link # of the direction fixed in it
+uu_# | \upsilon_{#} |  | LUMPING
+    squared length, across the axis, of the direction fixed in link #
+px_# | x_{#} |  | LOOP_CLOSURE
+    component along the reference direction
+py_# | y_{#} |  | LOOP_CLOSURE
+    component across the reference direction
+Kd_# | K^d_{#} | m^2 | LOOP_CLOSURE
+    projection on the centre's direction, from the distance fixed by the joints beyond joint #
+Kc_# | K^c_{#} |  | LOOP_CLOSURE
+    factor of the cosine in the equation of joint #
+Ks_# | K^s_{#} |  | LOOP_CLOSURE
+    factor of the sine in the equation of joint #
+Kr_# | K^r_{#} |  | LOOP_CLOSURE
+    right-hand side of the equation of joint #
+rho2_# | \rho_{#}^2 |  | LOOP_CLOSURE
+    squared amplitude
+disc_# | \Delta_{#} |  | LOOP_CLOSURE
+    discriminant
+root_# | r_{#} |  | LOOP_CLOSURE
+    root, with the sign of the branch
+root_#:amplitude | \rho_{#} |  | LOOP_CLOSURE
+    amplitude, with the sign of the branch
+root_#:nearest | \rho_{#} | m^2 | LOOP_CLOSURE
+    amplitude: off the manifold the nearest angle is taken
+xi_# | \boldsymbol\xi_{#} |  | LOOP_CLOSURE RESOLVED
+    the vector from joint # to the connection point, resolved along link #
+from_centre_# | \mathbf y_{#} | m | GEOMETRY
+    from the centre at zero displacement to the connection point
+px_#:slide | x_{#} | m | LOOP_CLOSURE
+    component along axis #
+disc_#:slide | \Delta_{#} | m^2 | LOOP_CLOSURE
+    discriminant of the distance equation
+""")
 
 
 class _Solver:
@@ -145,6 +190,7 @@ class _Solver:
         self.g = g
         self.normal = normal
         self.constrained = constrained
+        self.eq = Writer(book, g, _TERMS)
         self.q: dict[int, Any] = {
             j: sp.Symbol(g.name(f"y_{j}_extra"), real=True)
             for j in range(1, g.count + 1)
@@ -170,16 +216,8 @@ class _Solver:
         else:
             x = self._turn(j, x)
         x = x - self.q[j] * g.slide(j) - g.offset[j + 1]
-        if j < g.count and not isinstance(x, VectorSymbol):
-            x = self.book.define(
-                g.name(f"x_{j + 1}"),
-                x,
-                rf"\mathbf x_{{{j + 1}}}",
-                f"from the origin of joint {j + 1} to the connection point",
-                Law.GEOMETRY,
-                unit="m",
-                body=g.frame("axes", g.group[j]),
-            )
+        if j < g.count:
+            x = self.eq.named("x_#", x, j + 1, body=g.frame("axes", g.group[j]))
         return x
 
     def _later(self, j: int) -> list[int]:
@@ -285,89 +323,20 @@ class _Solver:
         self.methods[j] = method
         if method == "sphere":
             squared = (Dot(x, x) + Dot(u, u) - Dot(value, value)) / 2
-            value = self._scalar(
-                f"Kd_{j}",
-                squared,
-                f"K^d_{{{j}}}",
-                f"projection on the centre's direction, from the distance "
-                f"fixed by the joints beyond joint {j}",
-                "m^2",
-            )
+            value = self.eq.named("Kd_#", squared, j)
         return self._projection(j, x, u, value, method)
 
-    def _scalar(
-        self,
-        stem: str,
-        rhs: Any,
-        latex: str,
-        title: str,
-        unit: str = "m",
-        law: Law = Law.LOOP_CLOSURE,
-        conditions: tuple[Condition, ...] = (),
-    ) -> Any:
-        if rhs == 0 or isinstance(rhs, sp.Symbol):
-            return rhs
-        return self.book.define(
-            self.g.name(stem), rhs, latex, title, law, unit=unit, conditions=conditions
-        )
-
-    def _turn_axes(self, j: int) -> tuple[Vector, Vector, Vector]:
-        """Axes of the turn frame of joint j (fixed in link j-1)."""
+    def _turn_axes(self, j: int) -> tuple[Vector, Vector]:
+        """x and y axes of the turn frame of joint j (fixed in link j-1)."""
         turn = self.g.frame("turn", j)
-        unit = (sp.S.One, sp.S.Zero, sp.S.Zero)
-        axes = []
-        for stem, latex, components, what in (
-            ("ref", r"\hat{\mathbf x}", unit, "reference direction of the angle"),
-            (
-                "across",
-                r"\hat{\mathbf y}",
-                (unit[1], unit[0], unit[1]),
-                "across the reference direction",
-            ),
-        ):
-            name = self.g.name(f"{stem}_{j}")
-            symbol = VectorSymbol(name)
-            self.book.give(
-                symbol,
-                turn,
-                components,
-                Quantity(
-                    name,
-                    rf"{latex}^0_{{{j}}}",
-                    f"{what} of joint {j}, fixed in link {j - 1}",
-                    "-",
-                    turn,
-                    parameter=True,
-                ),
-            )
-            axes.append(symbol)
-        return axes[0], axes[1], self.g.e[j]
+        x = self.eq.give("ref_#", turn, _ALONG_X, j, j - 1)
+        return x, self.eq.give("across_#", turn, _ALONG_Y, j, j - 1)
 
     def _link_axes(self, j: int) -> tuple[Vector, Vector]:
         """x and y axes of the canonical frame that joint j opens."""
         frame = self.g.frame("axes", j)
-        axes = []
-        for stem, latex, components in (
-            ("link_x", r"\hat{\mathbf x}", (1, 0, 0)),
-            ("link_y", r"\hat{\mathbf y}", (0, 1, 0)),
-        ):
-            name = self.g.name(f"{stem}_{j}")
-            symbol = VectorSymbol(name)
-            self.book.give(
-                symbol,
-                frame,
-                tuple(map(sp.Integer, components)),
-                Quantity(
-                    name,
-                    rf"{latex}_{{{j}}}",
-                    f"direction across axis {j}, fixed in link {j}",
-                    "-",
-                    frame,
-                    parameter=True,
-                ),
-            )
-            axes.append(symbol)
-        return axes[0], axes[1]
+        x = self.eq.give("link_x_#", frame, _ALONG_X, j)
+        return x, self.eq.give("link_y_#", frame, _ALONG_Y, j)
 
     def _projection(self, j: int, x: Vector, u: Vector, value: Any, method: str) -> Vector:
         """Solve u . x = value for the angle of joint j, u turning with link j."""
@@ -377,108 +346,45 @@ class _Solver:
         n, m = self._link_axes(j)
         u_n, u_m, along_axis = self._pattern(j, method, u)
         if u_n is None:
-            u_n = self._constant_of_link("un", j, Dot(u, n), of_u)
+            u_n = self._constant_of_link("un_#", j, Dot(u, n), of_u)
         if u_m is None:
-            u_m = self._constant_of_link("um", j, Dot(u, m), of_u)
-        K = self._scalar(
-            f"Kc_{j}",
-            u_n * A + u_m * B,
-            f"K^c_{{{j}}}",
-            f"factor of the cosine in the equation of joint {j}",
-            of_product,
-        )
-        N = self._scalar(
-            f"Ks_{j}",
-            u_n * B - u_m * A,
-            f"K^s_{{{j}}}",
-            f"factor of the sine in the equation of joint {j}",
-            of_product,
-        )
+            u_m = self._constant_of_link("um_#", j, Dot(u, m), of_u)
+        K = self.eq.named("Kc_#", u_n * A + u_m * B, j, unit=of_product)
+        N = self.eq.named("Ks_#", u_n * B - u_m * A, j, unit=of_product)
         along = sp.S.Zero if along_axis == 0 else Dot(u, e) * Dot(e, x)
-        C = self._scalar(
-            f"Kr_{j}",
-            value - along,
-            f"K^r_{{{j}}}",
-            f"right-hand side of the equation of joint {j}",
-            of_product,
-        )
+        C = self.eq.named("Kr_#", value - along, j, unit=of_product)
         root = self._turned(j, K, N, C, method)
         x_n, x_m = u_n * C + u_m * root, u_m * C - u_n * root
         of_square = "m^2" if of_u == "m" else "-"
-        length2 = self._constant_of_link("uu", j, u_n**2 + u_m**2, of_square)
-        resolved: Vector = self.book.define(
-            g.name(f"xi_{j}"),
-            (x_n / length2) * n + (x_m / length2) * m + Dot(e, x) * e,
-            rf"\boldsymbol\xi_{{{j}}}",
-            f"the vector from joint {j} to the connection point, resolved along link {j}",
-            Law.LOOP_CLOSURE,
-            unit=of_x,
-            body=g.frame("axes", j),
-            role=Role.RESOLVED,
-            joint=j,
-        )
+        length2 = self._constant_of_link("uu_#", j, u_n**2 + u_m**2, of_square)
+        value = (x_n / length2) * n + (x_m / length2) * m + Dot(e, x) * e
+        resolved: Vector = self.eq("xi_#", value, j, unit=of_x, body=g.frame("axes", j))
         return resolved
 
     def _in_turning_plane(self, j: int, x: Vector, unit: str) -> tuple[Any, Any]:
         """Components of x along and across the direction from which joint j's angle counts."""
-        reference, across, _ = self._turn_axes(j)
-        A = self._scalar(
-            f"px_{j}",
-            Dot(reference, x),
-            f"x_{{{j}}}",
-            "component along the reference direction",
-            unit,
-        )
-        B = self._scalar(
-            f"py_{j}",
-            Dot(across, x),
-            f"y_{{{j}}}",
-            "component across the reference direction",
-            unit,
-        )
-        return A, B
+        reference, across = self._turn_axes(j)
+        A = self.eq.named("px_#", Dot(reference, x), j, unit=unit)
+        return A, self.eq.named("py_#", Dot(across, x), j, unit=unit)
 
     def _turned(self, j: int, K: Any, N: Any, C: Any, method: str) -> Any:
         """Angle of joint j from K cos + N sin = C; returns the root, signed by the branch."""
         g, of_product = self.g, _UNITS[method][2]
         power = {"linear": 1, "sphere": 2, "orientation": 0}[method]
         unit = {0: "-", 1: "m^2", 2: "m^4"}[power]
-        rho2 = self._scalar(
-            f"rho2_{j}",
-            K * K + N * N,
-            rf"\rho_{{{j}}}^2",
-            "squared amplitude",
-            unit,
-            conditions=(Condition(Trouble.SINGULAR, K * K + N * N, g.size ** (2 * power), 2),),
-        )
-        sigma = self._branch_symbol(j)
+        regular = Condition(Trouble.SINGULAR, K * K + N * N, g.size ** (2 * power), 2)
+        rho2 = self.eq.named("rho2_#", K * K + N * N, j, unit=unit, conditions=(regular,))
+        sigma = self.eq.note("branch_#", j)
         c, s = sp.Symbol(g.name(f"c_{j}"), real=True), sp.Symbol(g.name(f"s_{j}"), real=True)
         self.branches.append(Branch(sigma, j, K * s - N * c, power))
         if C == 0:
-            root = self._scalar(
-                f"root_{j}",
-                sigma * sp.sqrt(rho2),
-                rf"\rho_{{{j}}}",
-                "amplitude, with the sign of the branch",
-                of_product,
-            )
+            amplitude = sigma * sp.sqrt(rho2)
+            root = self.eq.named("root_#:amplitude", amplitude, j, unit=of_product)
             self._cosine_sine(j, -N / root, K / root)
             return root
-        discriminant = self._scalar(
-            f"disc_{j}",
-            rho2 - C**2,
-            rf"\Delta_{{{j}}}",
-            "discriminant",
-            unit,
-            conditions=(Condition(Trouble.UNREACHABLE, rho2 - C**2),),
-        )
-        root = self._scalar(
-            f"root_{j}",
-            sigma * sp.sqrt(discriminant),
-            rf"r_{{{j}}}",
-            "root, with the sign of the branch",
-            of_product,
-        )
+        real = Condition(Trouble.UNREACHABLE, rho2 - C**2)
+        discriminant = self.eq.named("disc_#", rho2 - C**2, j, unit=unit, conditions=(real,))
+        root = self.eq.named("root_#", sigma * sp.sqrt(discriminant), j, unit=of_product)
         self._cosine_sine(j, (C * K - root * N) / rho2, (C * N + root * K) / rho2)
         return root
 
@@ -499,67 +405,24 @@ class _Solver:
                 return tuple(sp.S.Zero if z else None for z in zero)  # type: ignore[return-value]
         return (None, None, None)
 
-    def _constant_of_link(self, kind: str, j: int, rhs: Any, unit: str) -> Any:
+    def _constant_of_link(self, stem: str, j: int, rhs: Any, unit: str) -> Any:
         """A scalar made of parameters, and of extra coordinates where joints beyond have them."""
-        if rhs.is_number or isinstance(rhs, sp.Symbol):
+        if rhs.is_number:
             return rhs
-        latex, title = _CONSTANTS[kind]
-        return self.book.define(
-            self.g.name(f"{kind}_{j}"),
-            rhs,
-            rf"{latex}_{{{j}}}",
-            title.format(j=j),
-            Law.LUMPING,
-            unit=unit,
-            parameter=not any(self.g.is_extra(k) for k in range(j + 1, self.g.count + 1)),
-        )
-
-    def _branch_symbol(self, j: int) -> sp.Symbol:
-        name = self.g.name(f"branch_{j}")
-        symbol = sp.Symbol(name, real=True)
-        self.book.note_quantity(
-            Quantity(
-                name,
-                rf"\sigma_{{{j}}}",
-                f"assembly branch of joint {j}: +1 or -1, as at home",
-                "-",
-                parameter=True,
-            )
-        )
-        return symbol
+        beyond = range(j + 1, self.g.count + 1)
+        constant = not any(map(self.g.is_extra, beyond))
+        return self.eq.named(stem, rhs, j, unit=unit, parameter=constant)
 
     def _cosine_sine(self, j: int, cosine: Any, sine: Any) -> None:
-        book, g = self.book, self.g
-        c = book.define(
-            g.name(f"c_{j}"),
-            cosine,
-            f"c_{{{j}}}",
-            f"cosine of the angle of joint {j} from its reference direction",
-            Law.LOOP_CLOSURE,
-        )
-        s = book.define(
-            g.name(f"s_{j}"),
-            sine,
-            f"s_{{{j}}}",
-            f"sine of the angle of joint {j} from its reference direction",
-            Law.LOOP_CLOSURE,
-        )
-        c0, s0 = g.zero_turn[j]
-        self.q[j] = book.define(
-            g.name(f"q_{j}"),
-            sp.atan2(s * c0 - c * s0, c * c0 + s * s0),
-            f"q_{{{j}}}",
-            f"displacement of joint {j}",
-            Law.LOOP_CLOSURE,
-            unit="rad",
-            role=Role.DISPLACEMENT,
-            joint=j,
-        )
+        c = self.eq("c_#", cosine, j)
+        s = self.eq("s_#", sine, j)
+        c0, s0 = self.g.zero_turn[j]
+        self.q[j] = self.eq("q_#", sp.atan2(s * c0 - c * s0, c * c0 + s * s0), j)
 
     def _direct(self, j: int, x: Vector) -> Vector:
         """Nothing follows: the tip's offset must turn into x."""
         g = self.g
-        reference, across, _ = self._turn_axes(j)
+        reference, across = self._turn_axes(j)
         n, m = self._link_axes(j)
         tip = self._beyond(j)
         if tip == ZeroVector:
@@ -568,27 +431,16 @@ class _Solver:
             return x
         A, B = Dot(reference, x), Dot(across, x)
         along, aside = Dot(tip, n), Dot(tip, m)
-        length2 = self._constant_of_link("uu", j, along**2 + aside**2, "m^2")
+        length2 = self._constant_of_link("uu_#", j, along**2 + aside**2, "m^2")
         self.methods[j] = "direct"
         if not self.constrained:
-            self._cosine_sine(
-                j, (along * A + aside * B) / length2, (along * B - aside * A) / length2
-            )
-            return tip
-        squared = self._scalar(
-            f"rho2_{j}", (A**2 + B**2) * length2, rf"\rho_{{{j}}}^2", "squared amplitude", "m^4"
-        )
-        amplitude = self._scalar(
-            f"root_{j}",
-            sp.sqrt(squared),
-            rf"\rho_{{{j}}}",
-            "amplitude: off the manifold the nearest angle is taken",
-            "m^2",
-            conditions=(Condition(Trouble.SINGULAR, squared, g.size**4, 2),),
-        )
-        self._cosine_sine(
-            j, (along * A + aside * B) / amplitude, (along * B - aside * A) / amplitude
-        )
+            amplitude = length2
+        else:
+            squared = self.eq.named("rho2_#", (A**2 + B**2) * length2, j, unit="m^4")
+            regular = Condition(Trouble.SINGULAR, squared, g.size**4, 2)
+            amplitude = self.eq.named("root_#:nearest", sp.sqrt(squared), j, conditions=(regular,))
+        cosine, sine = along * A + aside * B, along * B - aside * A
+        self._cosine_sine(j, cosine / amplitude, sine / amplitude)
         return tip
 
     def _orient(self, j: int) -> None:
@@ -604,37 +456,17 @@ class _Solver:
 
     def _given(self, j: int, x: Vector) -> Vector:
         """The displacement is a coordinate of its own."""
-        g, book = self.g, self.book
         self.methods[j] = "given"
-        book.note_quantity(
-            Quantity(
-                self.q[j].name,
-                f"y_{{{j}}}",
-                f"extra coordinate: displacement of joint {j}",
-                g.kind(j).unit,
-                role=Role.DISPLACEMENT,
-                joint=j,
-            )
-        )
-        if g.turns(j):
+        self.eq.note("y_#_extra", j)
+        if self.g.turns(j):
             self._angle_of_displacement(j)
         return x
 
     def _angle_of_displacement(self, j: int) -> None:
         """Cosine and sine of a turning joint whose displacement is known."""
-        g, book, q = self.g, self.book, self.g.turn(j) * self.q[j]
-        c0, s0 = g.zero_turn[j]
-        for stem, rhs, what in (
-            ("c", sp.cos(q) * c0 - sp.sin(q) * s0, "cosine"),
-            ("s", sp.sin(q) * c0 + sp.cos(q) * s0, "sine"),
-        ):
-            book.define(
-                g.name(f"{stem}_{j}"),
-                rhs,
-                f"{stem}_{{{j}}}",
-                f"{what} of the angle of joint {j} from its reference direction",
-                Law.GEOMETRY,
-            )
+        q, (c0, s0) = self.g.turn(j) * self.q[j], self.g.zero_turn[j]
+        self.eq("c_#", sp.cos(q) * c0 - sp.sin(q) * s0, j, law=Law.GEOMETRY)
+        self.eq("s_#", sp.sin(q) * c0 + sp.cos(q) * s0, j, law=Law.GEOMETRY)
 
     def _slide(self, j: int, x: Vector) -> None:
         g, e = self.g, self.g.e[j]
@@ -656,56 +488,23 @@ class _Solver:
             return
         method, u, value = found
         self.methods[j] = method
-        advance, unit = g.advance(j), g.kind(j).unit
+        advance = g.advance(j)
         if method != "sphere":
             across = Dot(u, e) if u != e else sp.S.One
-            self.q[j] = self.book.define(
-                g.name(f"q_{j}"),
-                (Dot(u, x) - value) / (across * advance),
-                f"q_{{{j}}}",
-                f"displacement of joint {j}",
-                Law.LOOP_CLOSURE,
-                unit=unit,
-                role=Role.DISPLACEMENT,
-                joint=j,
-            )
+            self.q[j] = self.eq("q_#", (Dot(u, x) - value) / (across * advance), j)
             return
         centre, tip = u, value
-        y = x - centre
-        if not isinstance(y, VectorSymbol):
-            y = self.book.define(
-                g.name(f"from_centre_{j}"),
-                y,
-                rf"\mathbf y_{{{j}}}",
-                "from the centre at zero displacement to the connection point",
-                Law.GEOMETRY,
-                unit="m",
-            )
-        along = self._scalar(f"px_{j}", Dot(e, y), f"x_{{{j}}}", f"component along axis {j}")
+        y = self.eq.named("from_centre_#", x - centre, j)
+        along = self.eq.named("px_#:slide", Dot(e, y), j)
         squared = along**2 - Dot(y, y) + Dot(tip, tip)
         if self.normal is not None:  # only what lies across the direction left out can close
             squared = squared + Dot(self.normal, y) ** 2 - Dot(self.normal, tip) ** 2
-        discriminant = self._scalar(
-            f"disc_{j}",
-            squared,
-            rf"\Delta_{{{j}}}",
-            "discriminant of the distance equation",
-            "m^2",
-            conditions=(Condition(Trouble.UNREACHABLE, squared),),
-        )
-        sigma = self._branch_symbol(j)
+        real = Condition(Trouble.UNREACHABLE, squared)
+        discriminant = self.eq.named("disc_#:slide", squared, j, conditions=(real,))
+        sigma = self.eq.note("branch_#", j)
         q = sp.Symbol(g.name(f"q_{j}"), real=True)
         self.branches.append(Branch(sigma, j, q * advance - along, 1))
-        self.q[j] = self.book.define(
-            q.name,
-            (along + sigma * sp.sqrt(discriminant)) / advance,
-            f"q_{{{j}}}",
-            f"displacement of joint {j}",
-            Law.LOOP_CLOSURE,
-            unit=unit,
-            role=Role.DISPLACEMENT,
-            joint=j,
-        )
+        self.q[j] = self.eq("q_#", (along + sigma * sp.sqrt(discriminant)) / advance, j)
 
     def _numeric(self, j: int, reason: str = "") -> None:
         self.methods[j] = "numeric"

@@ -233,7 +233,7 @@ class DynamicsWriter:
     ) -> None:
         self.book, self.g, self.p, self.motion, self.k = book, g, platform, motion, kinematics
         self.forces = forces
-        self.write = LinearWriter(book, g, motion)
+        self.write = LinearWriter(book, g, motion.collection)
         self.bodies = bodies
 
     def rest(self, symbol: Any) -> Any:

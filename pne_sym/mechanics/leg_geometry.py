@@ -11,19 +11,21 @@ offset) that is not parallel to z.  A turn by the joint's angle leads from the
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from pne_sym.derivation import Book, Frame, Law, ParameterField, Quantity, Rule
+from pne_sym.derivation import Book, Frame, ParameterField, Rule
 from pne_sym.mechanics.axis_relations import axis_relations
 from pne_sym.mechanics.structure import TOLERANCE, LegType, is_coordinate
+from pne_sym.mechanics.terms import Writer, filled, glossary
 from pne_sym.model.joint_kinds import JointKind
 from pne_sym.model.kinematics import rotation_about
+from pne_sym.model.manipulator import Leg, Vector3
 from pne_sym.model.platform_kinds.interface import Direction
 from pne_sym.vector import Cross, Dot, Vector, VectorSymbol, ZeroVector, norm
 from pne_sym.vector.nodes import scale
@@ -32,7 +34,73 @@ Array = NDArray[np.float64]
 _E = np.eye(3)
 
 
-@dataclass
+_TERMS = glossary(r"""
+b | \mathbf b | m | given
+    base point of the leg
+q | \mathbf q | m | given
+    platform origin to connection point, fixed in the platform
+e_# | \mathbf e_{#} | - | given
+    axis of joint #
+d_# | \mathbf d_{#} | m | given
+    offset of &, fixed in link %
+z_# | \mathbf z_{#} | - | given
+    axis of group #
+l_# | \mathbf l_{#} | - | given
+    direction of interest in group #
+n%_#_part | \mathbf n'_{#} |  | GEOMETRY constant
+    part of the direction perpendicular to axis #
+n%_# | \mathbf n_{#} |  | GEOMETRY constant
+    canonical x axis of group #
+z0_# | \mathbf e_{#} | - | given
+    axis of joint #, fixed in link %
+k%_# | \mathbf k_{%#} | - | given
+    axis % of group &
+aside_# | \mathbf a'_{#} |  | GEOMETRY constant
+    direction across axis #
+reference_# | \mathbf a^0_{#} |  | GEOMETRY constant
+    reference direction of the angle of joint #
+l0_# | \mathbf l^0_{#} | - | given
+    direction of interest of group # at zero displacement
+c0_# | c^0_{#} |  | GEOMETRY constant
+    cosine of the angle at zero displacement of joint #
+s0_# | s^0_{#} |  | GEOMETRY constant
+    sine of the angle at zero displacement of joint #
+end_axis | \mathbf a_l | - | given
+    axis of the platform joint in the last link
+end_across | \mathbf i_{#} | - | given
+    direction # of the last link, well across that axis
+end_l# | \mathbf a_{l#} | - | given
+    direction of the platform joint, fixed in the last link
+end_l#:across | \mathbf a_{l#} |  | LUMPING constant
+    direction # across the platform joint's axis, fixed in the last link
+end_p# | \mathbf a_{p#} | - | given
+    direction of the platform joint, fixed in the platform
+""")
+_FIELDS = {
+    "base_point": ("base_point", (3,), "m", "base point, base frame"),
+    "base_frame": ("base_frame", (3, 3), "-", "rotation from leg axes to base axes"),
+    "platform_point": ("platform_point", (3,), "m", "platform joint, platform frame"),
+    "joint#_axis": ("joints[%].axis", (3,), "-", "axis of joint #, preceding link's frame"),
+    "joint#_pitch": ("joints[%].pitch", (), "m/rad", "pitch of joint #"),
+    "joint#_offset": ("joints[%].offset", (3,), "m", "offset of joint #, preceding link's frame"),
+    "platform_joint_#": ("platform_joint.#", (3,), "-", "# of the platform joint"),
+    "platform_joint_offset": (
+        "platform_joint.offset",
+        (3,),
+        "m",
+        "offset of platform joint, preceding link's frame",
+    ),
+    "platform_joint_rotation": (
+        "platform_joint.rotation",
+        (3, 3),
+        "-",
+        "platform axes in the last link's frame",
+    ),
+}
+"""Live parameters of a leg: path in the leg, shape, unit, meaning."""
+
+
+@dataclass(frozen=True)
 class LegGeometry:
     """Symbols and frames of a leg type.
 
@@ -202,7 +270,12 @@ def build_geometry(book: Book, leg_type: LegType, suffix: str, planar: bool) -> 
     builder.offsets()
     builder.frames()
     builder.platform_joint()
-    return geometry
+    return replace(
+        geometry,
+        base_point=builder.base_point,
+        platform_point=builder.platform_point,
+        end_pattern=builder.end_pattern,
+    )
 
 
 class _Builder:
@@ -214,38 +287,20 @@ class _Builder:
         self.spec: dict[int, Any] = {}  # axis components in spec axes, by joint
         self.choice: dict[int, Any] = {}  # spec components of the direction behind x, by group
         self.c = geometry.canonical
+        self.base_point: Any = None
+        self.platform_point: Any = None
+        self.end_pattern: tuple[Any, ...] = ()
+        self.eq = Writer(book, geometry, _TERMS)
 
-    def field(
-        self,
-        stem: str,
-        shape: tuple[int, ...],
-        unit: str,
-        meaning: str,
-        path: str,
-        pick: Any,
-        **facts: Any,
-    ) -> tuple[sp.Expr, ...]:
+    def field(self, stem: str, *numbers: Any, **facts: Any) -> tuple[sp.Expr, ...]:
         """A live parameter over the legs of the type; facts: its zeros and its rule."""
-        paths = tuple(f"legs[{i}].{path}" for i in self.type.indices)
+        path, shape, unit, meaning = _FIELDS[stem]
+        path, name, meaning = (filled(text, numbers) for text in (path, stem, meaning))
+        own, paths = self.type.name, tuple(f"legs[{i}].{path}" for i in self.type.indices)
+        values = self.type.over_legs(lambda leg: value_at(leg, path))
         return self.book.parameters.add(
-            ParameterField(
-                f"{self.type.name}_{stem}",
-                self.type.name,
-                shape,
-                unit,
-                meaning,
-                paths,
-                self.type.over_legs(pick),
-                **facts,
-            )
+            ParameterField(f"{own}_{name}", own, shape, unit, meaning, paths, values, **facts)
         )
-
-    def give(
-        self, stem: str, frame: str, components: Any, latex: str, meaning: str, unit: str = "m"
-    ) -> Any:
-        symbol = VectorSymbol(self.g.name(stem))
-        quantity = Quantity(symbol.name, latex, meaning, unit, frame, parameter=True)
-        return self.book.give(symbol, frame, components, quantity)
 
     def _turned(self) -> Rule:
         """What a frame must be."""
@@ -253,43 +308,13 @@ class _Builder:
 
     def points(self) -> None:
         flat = (2,) if self.planar else ()
-        b = self.field(
-            "base_point",
-            (3,),
-            "m",
-            "base point, base frame",
-            "base_point",
-            lambda leg: leg.base_point,
-            zeros=flat,
-        )
-        frame = self.field(
-            "base_frame",
-            (3, 3),
-            "-",
-            "rotation from leg axes to base axes",
-            "base_frame",
-            lambda leg: leg.base_frame,
-            rule=self._turned(),
-        )
-        p = self.field(
-            "platform_point",
-            (3,),
-            "m",
-            "platform joint, platform frame",
-            "platform_point",
-            lambda leg: leg.platform_point,
-            zeros=flat,
-        )
+        b = self.field("base_point", zeros=flat)
+        frame = self.field("base_frame", rule=self._turned())
+        p = self.field("platform_point", zeros=flat)
         if self.planar:  # legs of the plane keep z along the plane's normal
             frame = (*frame[:2], 0, *frame[3:5], 0, 0, 0, 1)
-        self.g.base_point = self.give("b", "base", b, r"\mathbf b", "base point of the leg")
-        self.g.platform_point = self.give(
-            "q",
-            "platform",
-            p,
-            r"\mathbf q",
-            "platform origin to connection point, fixed in the platform",
-        )
+        self.base_point = self.eq.give("b", "base", b)
+        self.platform_point = self.eq.give("q", "platform", p)
         self.book.frames.append(Frame(self.g.frame("spec", 0), "base", frame))
 
     def axes(self) -> None:
@@ -297,30 +322,16 @@ class _Builder:
         g.group[0] = 0
         for j, joint in enumerate(self.type.model.joints, 1):
             if is_coordinate(joint.axis):
-                self.spec[j] = tuple(sp.Integer(int(a)) for a in joint.axis)
+                self.spec[j] = _unit(joint.axis)
             else:
-                self.spec[j] = self.field(
-                    f"joint{j}_axis",
-                    (3,),
-                    "-",
-                    f"axis of joint {j}, preceding link's frame",
-                    f"joints[{j - 1}].axis",
-                    lambda leg, j=j: leg.joints[j - 1].axis,
-                    zeros=(2,) if self.planar else (),
-                    rule=Rule.UNIT,
-                )
+                zeros = (2,) if self.planar else ()
+                rule = Rule.UNIT
+                self.spec[j] = self.field("joint#_axis", j, j - 1, zeros=zeros, rule=rule)
             if joint.kind.pitched:
-                (g.pitch[j],) = self.field(
-                    f"joint{j}_pitch",
-                    (),
-                    "m/rad",
-                    f"pitch of joint {j}",
-                    f"joints[{j - 1}].pitch",
-                    lambda leg, j=j: leg.joints[j - 1].pitch,
-                )
+                (g.pitch[j],) = self.field("joint#_pitch", j, j - 1)
             group = j if g.turns(j) else group
             g.group[j] = group
-        g.axes_at = [self._axes_with(extra) for extra in self._extra_draws()]
+        g.axes_at.extend(self._axes_with(extra) for extra in self._extra_draws())
         self.book.parameters.relations.extend(axis_relations(self.type))
 
     def _extra_draws(self) -> list[dict[int, float]]:
@@ -342,35 +353,26 @@ class _Builder:
         return result
 
     def offsets(self) -> None:
-        joints = self.type.model.joints
         for j in range(1, self.g.count + 2):
-            last = j == self.g.count + 1
-            value = self.type.model.platform_joint.offset if last else joints[j - 1].offset
-            zeros = tuple(i for i in range(3) if value[i] == 0.0)
+            zeros = tuple(i for i, v in enumerate(self._offset(j)) if v == 0.0)
             if len(zeros) == 3:
                 self.g.offset[j] = ZeroVector
                 continue
-            stem = "platform_joint_offset" if last else f"joint{j}_offset"
-            path = "platform_joint.offset" if last else f"joints[{j - 1}].offset"
-            what = "platform joint" if last else f"joint {j}"
-            components = self.field(
-                stem,
-                (3,),
-                "m",
-                f"offset of {what}, preceding link's frame",
-                path,
-                lambda leg, j=j: (*(x.offset for x in leg.joints), leg.platform_joint.offset)[
-                    j - 1
-                ],
-                zeros=zeros,
-            )
-            self.g.offset[j] = self.give(
-                f"d_{j}",
-                self.g.frame("spec", self.g.group[j - 1]),
-                components,
-                rf"\mathbf d_{{{j}}}",
-                f"offset of {what}, fixed in link {j - 1}",
-            )
+            last = j == self.g.count + 1
+            stem = "platform_joint_offset" if last else "joint#_offset"
+            components = self.field(stem, j, j - 1, zeros=zeros)
+            frame, what = self.g.frame("spec", self.g.group[j - 1]), f"joint {j}"
+            what = "platform joint" if last else what
+            self.g.offset[j] = self.eq.give("d_#", frame, components, j, j - 1, what)
+
+    def _offset(self, j: int) -> Vector3:
+        """Of joint j; beyond the last one, of the platform joint."""
+        model = self.type.model
+        return (*(joint.offset for joint in model.joints), model.platform_joint.offset)[j - 1]
+
+    def _axes_of(self, j: int) -> Array:
+        """Axis of joint j in numbers (legs, 3)."""
+        return self.type.over_legs(lambda leg: leg.joints[j - 1].axis)
 
     def frames(self) -> None:
         turning = [j for j in range(1, self.g.count + 1) if self.g.turns(j)]
@@ -393,26 +395,13 @@ class _Builder:
             for j in range(1, self.g.count + 1)
             if self.g.turns(j) and self.g.group[j - 1] == group and j != group
         ]
-        for j in slides + following:
-            found.append(
-                (self.spec[j], self.type.over_legs(lambda leg, j=j: leg.joints[j - 1].axis))
-            )
+        found += [(self.spec[j], self._axes_of(j)) for j in slides + following]
+        axes = []
         for j in [j + 1 for j in members]:
-            joints = self.type.model.joints
-            value = (
-                joints[j - 1].offset if j <= self.g.count else self.type.model.platform_joint.offset
-            )
-            nonzero = [i for i in range(3) if value[i] != 0.0]
-            if len(nonzero) == 1:
-                axis = _E[nonzero[0]]
-                found.append(
-                    (tuple(sp.Integer(int(a)) for a in axis), np.tile(axis, (self.type.count, 1)))
-                )
-        found.extend(
-            (tuple(sp.Integer(int(a)) for a in axis), np.tile(axis, (self.type.count, 1)))
-            for axis in _E
-        )
-        return found
+            along = [i for i, v in enumerate(self._offset(j)) if v != 0.0]
+            axes += [_E[along[0]]] if len(along) == 1 else []
+        tiles = self.type.count, 1
+        return found + [(_unit(axis), np.tile(axis, tiles)) for axis in (*axes, *_E)]
 
     def _canonical(self, group: int, z: Any, z_values: Array) -> tuple[Any, Array, bool]:
         """Canonical x axis: (spec components or None, numeric per leg, is exact)."""
@@ -431,13 +420,11 @@ class _Builder:
     def _base_group(self, first: int | None) -> None:
         if first is None:
             spec = self.g.frame("spec", 0)
-            self.book.frames.append(
-                Frame(self.g.frame("axes", 0), spec, tuple(sp.Integer(int(v)) for v in _E.ravel()))
-            )
+            self.book.frames.append(Frame(self.g.frame("axes", 0), spec, _unit(_E.ravel())))
             self.c[0] = np.tile(_E, (self.type.count, 1, 1))
             return
         z = self.spec[first]
-        z_values = self.type.over_legs(lambda leg: leg.joints[first - 1].axis)
+        z_values = self._axes_of(first)
         matrix, vectors = self._frame_of(0, z, z_values)
         self.c[0] = matrix
         pattern = _pattern(matrix)
@@ -455,17 +442,8 @@ class _Builder:
             self.g.exact_frames.add(group)
             return matrix, None
         frame = self.g.frame("spec", group)
-        z_vector = self.give(
-            f"z_{group}", frame, z, rf"\mathbf z_{{{group}}}", f"axis of group {group}", "-"
-        )
-        direction = self.give(
-            f"l_{group}",
-            frame,
-            components,
-            rf"\mathbf l_{{{group}}}",
-            f"direction of interest in group {group}",
-            "-",
-        )
+        z_vector = self.eq.give("z_#", frame, z, group)
+        direction = self.eq.give("l_#", frame, components, group)
         x_vector = self._perpendicular_unit(group, direction, z_vector)
         self.g.x_axis[group] = x_vector
         return matrix, (x_vector, Cross(z_vector, x_vector), z_vector)
@@ -477,28 +455,13 @@ class _Builder:
 
         `frame` is where direction and z are given, by default in the group itself.
         """
-        name = self.g.name(f"n{zero}_{group}")
-        part = self.book.define(
-            f"{name}_part",
-            direction - Dot(z, direction) * z,
-            rf"\mathbf n'_{{{group}}}",
-            f"part of the direction perpendicular to axis {group}",
-            Law.GEOMETRY,
-            parameter=True,
-            body=frame or self.g.frame("spec", group),
-        )
-        return self.book.define(
-            name,
-            part / norm(part),
-            rf"\mathbf n_{{{group}}}",
-            f"canonical x axis of group {group}",
-            Law.GEOMETRY,
-            parameter=True,
-        )
+        frame, along = frame or self.g.frame("spec", group), direction - Dot(z, direction) * z
+        part = self.eq("n%_#_part", along, group, zero, body=frame)
+        return self.eq("n%_#", part / norm(part), group, zero)
 
     def _turn_frame(self, j: int, previous: int) -> None:
         """Frames of the group that joint j opens: turn frame, canonical frame, spec frame."""
-        z, z_values = self.spec[j], self.type.over_legs(lambda leg: leg.joints[j - 1].axis)
+        z, z_values = self.spec[j], self._axes_of(j)
         c_previous = self.c[previous]
         matrix, vectors = self._frame_of(j, z, z_values)
         self.c[j] = matrix
@@ -535,79 +498,18 @@ class _Builder:
     def _general_turn(self, j: int, previous: int, turn: Array, tilt: int) -> None:
         """Turn frame and zero angle from live axes."""
         g, frame = self.g, self.g.frame("spec", previous)
-        axis = self.give(
-            f"z0_{j}",
-            frame,
-            self.spec[j],
-            rf"\mathbf e_{{{j}}}",
-            f"axis of joint {j}, fixed in link {j - 1}",
-            "-",
-        )
-        frame_axes = g.frame("axes", previous)
-        directions = [
-            self.give(
-                f"k{i}_{j}",
-                frame_axes,
-                tuple(sp.Integer(int(v)) for v in _E[i]),
-                rf"\mathbf k_{{{i}{j}}}",
-                f"axis {i} of group {previous}",
-                "-",
-            )
-            for i in (tilt,)
-        ]
-        across = self.book.define(
-            g.name(f"aside_{j}"),
-            Cross(directions[0], axis),
-            rf"\mathbf a'_{{{j}}}",
-            f"direction across axis {j}",
-            Law.GEOMETRY,
-            parameter=True,
-            body=frame_axes,
-        )
-        reference = self.book.define(
-            g.name(f"reference_{j}"),
-            across / norm(across),
-            rf"\mathbf a^0_{{{j}}}",
-            f"reference direction of the angle of joint {j}",
-            Law.GEOMETRY,
-            parameter=True,
-            body=frame_axes,
-        )
-        self.book.frames.append(
-            Frame(
-                g.frame("turn", j),
-                frame_axes,
-                _pattern(turn),
-                axes=(reference, Cross(axis, reference), axis),
-            )
-        )
-        components = self.choice[j]
-        direction = self.give(
-            f"l0_{j}",
-            frame,
-            components,
-            rf"\mathbf l^0_{{{j}}}",
-            f"direction of interest of group {j} at zero displacement",
-            "-",
-        )
+        axis = self.eq.give("z0_#", frame, self.spec[j], j, j - 1)
+        before = g.frame("axes", previous)
+        k = self.eq.give("k%_#", before, _unit(_E[tilt]), j, tilt, previous)
+        across = self.eq("aside_#", Cross(k, axis), j, body=before)
+        reference = self.eq("reference_#", across / norm(across), j, body=before)
+        axes = reference, Cross(axis, reference), axis
+        self.book.frames.append(Frame(g.frame("turn", j), before, _pattern(turn), axes=axes))
+        direction = self.eq.give("l0_#", frame, self.choice[j], j)
         x_zero = self._perpendicular_unit(j, direction, axis, zero="0", frame=frame)
         g.zero_turn[j] = (
-            self.book.define(
-                g.name(f"c0_{j}"),
-                Dot(reference, x_zero),
-                f"c^0_{{{j}}}",
-                f"cosine of the angle at zero displacement of joint {j}",
-                Law.GEOMETRY,
-                parameter=True,
-            ),
-            self.book.define(
-                g.name(f"s0_{j}"),
-                Dot(axis, Cross(reference, x_zero)),
-                f"s^0_{{{j}}}",
-                f"sine of the angle at zero displacement of joint {j}",
-                Law.GEOMETRY,
-                parameter=True,
-            ),
+            self.eq("c0_#", Dot(reference, x_zero), j),
+            self.eq("s0_#", Dot(axis, Cross(reference, x_zero)), j),
         )
 
     def _note_straight_ends(self) -> None:
@@ -633,16 +535,12 @@ class _Builder:
     def _give_axis(self, j: int) -> None:
         """The axis vector e_j, in the frame where it is simplest."""
         group = self.g.group[j]
-        values = np.einsum(
-            "lji,lj->li", self.c[group], self.type.over_legs(lambda leg: leg.joints[j - 1].axis)
-        )
-        pattern = _pattern(values)
-        meaning = f"axis of joint {j}"
+        pattern = _pattern(np.einsum("lji,lj->li", self.c[group], self._axes_of(j)))
         if None in pattern:
             frame, components = self.g.frame("spec", group), self.spec[j]
         else:
             frame, components = self.g.frame("axes", group), pattern
-        self.g.e[j] = self.give(f"e_{j}", frame, components, rf"\mathbf e_{{{j}}}", meaning, "-")
+        self.g.e[j] = self.eq.give("e_#", frame, components, j)
 
     def platform_joint(self) -> None:
         """Pairs of directions that the platform joint keeps perpendicular (7.4)."""
@@ -660,92 +558,62 @@ class _Builder:
     def _two_across(self, axis: Any, platform: Any) -> None:
         """Two orthogonal directions across an axis that is not along a coordinate direction."""
         last = self.g.frame("spec", self.g.group[self.g.count])
-        a = self.give(
-            "end_axis",
-            last,
-            axis,
-            r"\mathbf a_l",
-            "axis of the platform joint in the last link",
-            "-",
-        )
+        a = self.eq.give("end_axis", last, axis)
         k = across(self.type)
-        d = self.give(
-            "end_across",
-            last,
-            tuple(sp.Integer(int(v)) for v in _E[k]),
-            rf"\mathbf i_{{{'xyz'[k]}}}",
-            f"direction {'xyz'[k]} of the last link, well across that axis",
-            "-",
-        )
+        d = self.eq.give("end_across", last, _unit(_E[k]), "xyz"[k])
         w = self._platform_direction(0, platform)
-        first = Cross(a, d)
-        for i, vector in enumerate((first / norm(first), None)):
-            direction = self.book.define(
-                self.g.name(f"end_l{i + 1}"),
-                Cross(a, self.g.pairs[0][0]) if vector is None else vector,
-                rf"\mathbf a_{{l{i + 1}}}",
-                f"direction {i + 1} across the platform joint's axis, fixed in the last link",
-                Law.LUMPING,
-                body=last,
-                parameter=True,
-            )
-            self.g.pairs.append((direction, w))
+        side = Cross(a, d)
+        first = self.eq("end_l#:across", side / norm(side), 1, body=last)
+        self.g.pairs.append((first, w))
+        self.g.pairs.append((self.eq("end_l#:across", Cross(a, first), 2, body=last), w))
 
     def _stated(self, name: str) -> Any:
         """Components of what the specification states of the platform joint: live or fixed."""
         value = getattr(self.type.model.platform_joint, name)
-        is_axis = name != "rotation"
-        if is_axis and is_coordinate(value):
-            return tuple(sp.Integer(int(a)) for a in value)
-        return self.field(
-            f"platform_joint_{name}",
-            (3,) if is_axis else (3, 3),
-            "-",
-            f"{name} of the platform joint"
-            if is_axis
-            else "platform axes in the last link's frame",
-            f"platform_joint.{name}",
-            lambda leg: getattr(leg.platform_joint, name),
-            rule=Rule.UNIT if is_axis else Rule.ROTATION,
-        )
+        if name == "rotation":
+            return self.field("platform_joint_rotation", rule=Rule.ROTATION)
+        if is_coordinate(value):
+            return _unit(value)
+        return self.field("platform_joint_#", name, rule=Rule.UNIT)
 
     def _pair(self, k: int, link: Any, platform: Any) -> None:
         last = self.g.frame("spec", self.g.group[self.g.count])
-        u = self.give(
-            f"end_l{k + 1}",
-            last,
-            link,
-            rf"\mathbf a_{{l{k + 1}}}",
-            "direction of the platform joint, fixed in the last link",
-            "-",
-        )
+        u = self.eq.give("end_l#", last, link, k + 1)
         self.g.pairs.append((u, self._platform_direction(k, platform)))
         values = self.type.over_legs(lambda leg: leg.platform_joint.axis_link or _E[k])
-        self.g.end_pattern = _pattern(
+        self.end_pattern = _pattern(
             np.einsum("lji,lj->li", self.c[self.g.group[self.g.count]], values)
         )
 
     def _platform_direction(self, k: int, components: Any) -> Any:
-        return self.give(
-            f"end_p{k + 1}",
-            "platform",
-            components,
-            rf"\mathbf a_{{p{k + 1}}}",
-            "direction of the platform joint, fixed in the platform",
-            "-",
-        )
+        return self.eq.give("end_p#", "platform", components, k + 1)
+
+
+def value_at(leg: Leg, path: str) -> Any:
+    """A value of a leg by its path, such as `joints[2].axis`."""
+    value: Any = leg
+    for part in path.split("."):
+        name, _, index = part.partition("[")
+        value = getattr(value, name)
+        value = value[int(index[:-1])] if index else value
+    return value
+
+
+def _unit(values: Iterable[float]) -> tuple[sp.Integer, ...]:
+    """Components of a coordinate direction."""
+    return tuple(sp.Integer(int(v)) for v in values)
 
 
 def _components(direction: Direction, stated: dict[str, Any]) -> tuple[Any, ...]:
     """Components of a direction of the platform joint in the frame of its body."""
     if not direction.field:
-        return tuple(sp.Integer(int(v)) for v in _E[direction.row])
+        return _unit(_E[direction.row])
     values = stated[direction.field]
     if direction.row is not None:
         return tuple(values[3 * direction.row : 3 * direction.row + 3])
     if direction.across:
         main = next(i for i, v in enumerate(values) if v != 0)
-        return tuple(sp.Integer(int(v)) for v in _E[(main + direction.across) % 3])
+        return _unit(_E[(main + direction.across) % 3])
     return tuple(values)
 
 

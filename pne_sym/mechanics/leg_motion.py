@@ -12,7 +12,7 @@ from typing import Any
 
 import sympy as sp
 
-from pne_sym.derivation import Book, Law, Quantity, ReciprocalBasis, Role
+from pne_sym.derivation import Book, ReciprocalBasis, Role
 from pne_sym.mechanics.completion import Freedoms, LeftOut, completed_wrenches
 from pne_sym.mechanics.constraints import (
     directions_left_out,
@@ -21,8 +21,9 @@ from pne_sym.mechanics.constraints import (
 )
 from pne_sym.mechanics.inverse_kinematics import InverseKinematics
 from pne_sym.mechanics.leg_geometry import LegGeometry
-from pne_sym.mechanics.linear_writer import LegMotion, LinearWriter
+from pne_sym.mechanics.linear_writer import Collection, LegMotion, LegRates, LegScrews, LinearWriter
 from pne_sym.mechanics.platform_motion import PlatformMotion
+from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.model.kinematics import TaskSpace
 from pne_sym.vector import (
     Compose,
@@ -42,6 +43,70 @@ from pne_sym.vector import (
 # Units of what is reciprocal to the freedom of a joint, by whether its displacement is an angle.
 _FORCE_PART = {True: "1/m", False: "-"}
 _MOMENT_PART = {True: "-", False: "m"}
+
+_TERMS = glossary(r"""
+r_# | \mathbf r_{#} | m | GEOMETRY
+    from joint # to the connection point, along the links
+S_dot | \dot{\mathbf S} | m/s | RATE POINT_VELOCITY | Sec. 2.5, step 1.1
+    velocity of the connection point
+v_# | \mathbf v_{#} |  | RATE | Sec. 2.2, joint table
+    velocity of the connection point per rate of joint #
+o_# | \mathbf o_{#} |  | RECIPROCITY RECIPROCAL | Sec. 2.2, joint table
+    moment part of reciprocal wrench #
+n_m# | \mathbf n_{m#} |  | GEOMETRY | Sec. 2.2, joint table
+    direction # of the moment that the platform joint transmits
+m#_% | m_{&#} |  | RECIPROCITY | Sec. 2.2, joint table
+    moment part # of reciprocal wrench &
+S_dot_rest | \dot{\mathbf S}' | m/s | RATE
+    velocity of the connection point left to the joints that are not extra
+eta_# | \eta_{#} | rad/s | RATE
+    rate at which the joints turn along moment direction #
+qd_# | \dot q_{#} | U/s | RECIPROCITY RATE
+    rate of joint #
+omega_# | \boldsymbol\omega_{#} | rad/s | RATE
+    angular velocity of link #
+W_# | \mathbf W_{#} | 1/s^2 | DEFINITION symmetric
+    centripetal tensor of link #
+u_1 | \mathbf u_1 | m/s^2 | RATE | Eq. 23
+    centripetal acceleration of the connection point
+a_p | \mathbf a_p | m/s^2 | RATE COLLECTED_ACCELERATION | Eq. 23
+    acceleration of the connection point without its centripetal part
+S_ddot | \ddot{\mathbf S} | m/s^2 | RATE POINT_ACCELERATION | Eq. 23
+    acceleration of the connection point
+zeta_# | \boldsymbol\zeta_{#} | rad/s^2 | RATE
+    angular acceleration of link # from the turning of axis #
+bias | \mathfrak b | m/s^2 | RATE BIAS | Sec. 2.2
+    acceleration of the connection point at zero joint accelerations
+rel | \ddot{\mathbf S}' ; \mathbf E | m/s^2 | RATE
+    acceleration of the connection point left to the joint accelerations
+etad_# | \dot\eta_{#} ; \boldsymbol\eta_{#} | rad/s^2 | RATE
+    acceleration with which the joints turn along moment direction #
+qdd_# | \ddot q_{#} ; \mathbf w_{#} | U/s^2 | RECIPROCITY JOINT_ACCELERATION | Eqs. 8, 9, 16
+    acceleration of joint #
+nd_m# | \dot{\mathbf n}_{m#} | 1/s | RATE
+    rate of moment direction #
+nu_# | \nu_{#} | rad/s^2 | RATE | Sec. 2.2, joint table
+    bias of the angular acceleration along moment direction #
+alpha_# | \boldsymbol\alpha_{#} ; \boldsymbol\Omega_{#} | rad/s^2 | RATE
+    angular acceleration of link #
+a_o# | \mathbf a_{o#} ; \mathbf V_{#} | m/s^2 | RATE
+    acceleration of the origin of joint #
+w_# | \mathbf w_{#} |  | RECIPROCITY RECIPROCAL | Sec. 2.3
+    reciprocal vector %
+wn_# | \mathbf w_{c#} |  | RECIPROCITY RECIPROCAL | Sec. 2.3
+    reciprocal vector %
+yd_# | \dot y_{#} | U/s | given RATE
+    rate of extra joint #
+ydd_# | \ddot y_{#} | U/s^2 | given JOINT_ACCELERATION
+    acceleration of extra joint #
+beta_# | \boldsymbol\beta_{#} | rad/s^2 | RATE
+    angular acceleration of link # at zero joint accelerations
+B_# | \mathbf B_{#} | 1/s^2 | DEFINITION
+    acceleration tensor of link #
+B_#_o | \mathbf B^{\circ}_{#} | 1/s^2 | DEFINITION
+    remainder of the acceleration tensor of link #
+""")
+_WRENCH = {"title": "force part of reciprocal wrench {k}", "reference": "Sec. 2.2, joint table"}
 
 _RATES = (
     r"Each joint j moves the connection point along its velocity vector $`\mathbf v_j`$: "
@@ -77,15 +142,39 @@ class _Screw:
     """A column of a leg's system: a joint's freedom, or a wrench that the freedoms leave out.
 
     Attributes:
-        stem, latex: of the vector reciprocal to it.
+        stem: of the vector reciprocal to it.
+        number: of the joint, or of the wrench.
         is_angle: its displacement is an angle.
-        joint: from 1; 0 for a wrench.
     """
 
     stem: str
-    latex: str
+    number: int
     is_angle: bool = False
-    joint: int = 0
+
+    @property
+    def joint(self) -> int:
+        """The joint; 0 for a wrench."""
+        return self.number if self.stem == "w_#" else 0
+
+
+@dataclass(frozen=True)
+class _Bias:
+    """Accelerations at zero joint accelerations.
+
+    Attributes:
+        point: of the connection point.
+        coriolis: angular, from the turning of the group's axis, by group.
+        beta: angular, by group.
+    """
+
+    point: Vector
+    coriolis: dict[int, Vector]
+    beta: dict[int, Vector]
+
+
+def _resolved(screws: LegScrews, j: int, amounts: Sequence[Any]) -> Any:
+    """Part of joint j in what turns along the moment directions."""
+    return sp.Add(*(m * a for m, a in zip(screws.m.get(j, ()), amounts, strict=False)))
 
 
 class MotionWriter:
@@ -104,7 +193,7 @@ class MotionWriter:
         self.x = inverse.x
         self.S = inverse.S
         self.is_closed = inverse.is_closed
-        self.motion = LegMotion()
+        self.eq = Writer(book, g, _TERMS)
 
     def write(self, prefix: str) -> LegMotion:
         """Write the chapters on rates and accelerations."""
@@ -112,7 +201,7 @@ class MotionWriter:
         self.book.chapter(
             f"{prefix}-V", f"Rates of a {leg_type.architecture} leg", _RATES, leg_type.name
         )
-        self.velocity()
+        rates = self.velocity()
         self.book.chapter(
             f"{prefix}-A",
             f"Accelerations of a {leg_type.architecture} leg",
@@ -122,8 +211,7 @@ class MotionWriter:
             + _TENSOR,
             leg_type.name,
         )
-        self.acceleration()
-        return self.motion
+        return self.acceleration(rates)
 
     def _other_accelerations(self) -> str:
         """Which accelerations are collected besides that of the connection point."""
@@ -160,18 +248,8 @@ class MotionWriter:
         """From the origin of turning joint j to the connection point."""
         g = self.g
         vector = vector_sum((self.spans[j], following))
-        if isinstance(vector, VectorSymbol) or vector == ZeroVector:
-            return vector
-        named: Vector = self.book.define(
-            g.name(f"r_{j}"),
-            vector,
-            rf"\mathbf r_{{{j}}}",
-            f"from joint {j} to the connection point, along the links",
-            Law.GEOMETRY,
-            unit="m",
-            body=g.frame("axes", j),
-            forms=self._closed_loop(j),
-        )
+        frame, forms = g.frame("axes", j), self._closed_loop(j)
+        named: Vector = self.eq.named("r_#", vector, j, body=frame, forms=forms)
         return named
 
     def _closed_loop(self, j: int) -> tuple[Vector, ...]:
@@ -192,50 +270,30 @@ class MotionWriter:
 
     # ---- rates -----------------------------------------------------------------------
 
-    def velocity(self) -> None:
+    def velocity(self) -> LegRates:
         """Velocity of the connection point, joint screws, reciprocal wrenches, rates."""
-        g, book, p = self.g, self.book, self.p
-        self.S_dot = book.define(
-            g.name("S_dot"),
-            p.t_dot + Cross(p.omega, g.platform_point),
-            r"\dot{\mathbf S}",
-            "velocity of the connection point",
-            Law.RATE,
-            unit="m/s",
-            reference="Sec. 2.5, step 1.1",
-            body="base",
-            role=Role.POINT_VELOCITY,
-        )
+        g, p = self.g, self.p
+        S_dot = self.eq("S_dot", p.t_dot + Cross(p.omega, g.platform_point), body="base")
         turning = [j for j in range(1, g.count + 1) if g.turns(j)]
         self.spans = {group: self.span(group) for group in [0, *turning]}
         rods: dict[int, Vector] = {}
         following: Vector = ZeroVector
         for j in reversed(turning):
             following = rods[j] = self._rod(j, following)
-        for j in range(1, g.count + 1):
-            self.motion.v[j] = self._velocity_vector(j, rods)
-        first = turning[0] if turning else None
-        reached = vector_sum((self.spans[0], rods[first] if first else ZeroVector))
+        v = {j: self._velocity_vector(j, rods) for j in range(1, g.count + 1)}
+        reached = vector_sum((self.spans[0], rods[turning[0]] if turning else ZeroVector))
         # Three joints with a closed form leave no gap, they miss right angles alone.
-        closes = self.is_closed and g.pairs and sum(not g.is_extra(j) for j in self.motion.v) == 3
-        self.motion.gap = ZeroVector if closes else self.S - reached
-        self._basis()
-        self._rates()
+        closes = self.is_closed and g.pairs and sum(not g.is_extra(j) for j in v) == 3
+        screws = self._basis(v, ZeroVector if closes else self.S - reached)
+        return self._angular_velocities(screws, self._rates(screws, S_dot))
 
     def _velocity_vector(self, j: int, rods: dict[int, Vector]) -> Vector:
         g = self.g
         if not g.turns(j):
             return g.e[j]
         vector = Cross(g.spin(j), rods[j]) + g.slide(j)
-        named: Vector = self.book.define(
-            g.name(f"v_{j}"),
-            vector,
-            rf"\mathbf v_{{{j}}}",
-            f"velocity of the connection point per rate of joint {j}",
-            Law.RATE,
-            unit=g.kind(j).velocity_unit,
-            body=self.tip_frame(),
-            reference="Sec. 2.2, joint table",
+        named: Vector = self.eq(
+            "v_#", vector, j, body=self.tip_frame(), unit=g.kind(j).velocity_unit
         )
         return named
 
@@ -243,49 +301,60 @@ class MotionWriter:
         """Canonical frame of the last link."""
         return self.g.frame("axes", self.g.group[self.g.count])
 
-    def _basis(self) -> None:
+    def _basis(self, v: dict[int, Vector], gap: Vector) -> LegScrews:
         """Reciprocal wrenches; directions that the freedoms leave out complete the basis."""
-        g, motion = self.g, self.motion
+        g = self.g
         joints = [j for j in range(1, g.count + 1) if not g.is_extra(j)]
-        vectors: list[Any] = [motion.v[j] for j in joints]
+        vectors: list[Any] = [v[j] for j in joints]
         scales: list[Any] = [g.size * g.turn(j) if g.turns(j) else sp.S.One for j in joints]
-        self._moment_directions()
-        rows = [[Dot(g.spin(j), n) for j in joints] for n in motion.n]
+        directions = self._moment_directions()
+        rows = [[Dot(g.spin(j), n) for j in joints] for n in directions]
         missing = (2 if self.space.planar else 3) + len(rows) - len(joints)
         frame = self.tip_frame()
-        freedoms = Freedoms(list(vectors), [list(r) for r in rows], list(scales), motion.n, frame)
-        wrenches = self._left_out(joints, missing, freedoms)
-        motion.left_out = [wrench for wrench in wrenches if wrench.acts]
+        freedoms = Freedoms(list(vectors), [list(r) for r in rows], list(scales), directions, frame)
+        wrenches = self._left_out(v, joints, missing, freedoms)
         for wrench in wrenches:
             vectors.append(wrench.force)
             scales.append(g.size if wrench.of_moment else sp.S.One)
             for row, amount in zip(rows, wrench.amounts, strict=True):
                 row.append(amount)
-        screws = [
-            *(_Screw(f"w_{j}", rf"\mathbf w_{{{j}}}", g.kind(j).is_angle, j) for j in joints),
-            *(_Screw(f"wn_{k}", rf"\mathbf w_{{c{k}}}") for k in range(1, missing + 1)),
+        columns = [
+            *(_Screw("w_#", j, g.kind(j).is_angle) for j in joints),
+            *(_Screw("wn_#", k) for k in range(1, missing + 1)),
         ]
-        duals, moment_duals = (
-            self._define_wrenches(vectors, rows, screws)
+        duals, amounts = (
+            self._define_wrenches(vectors, rows, columns)
             if rows
-            else (self._define_duals(vectors, screws), [])
+            else (self._define_duals(vectors, columns), [])
         )
-        motion.w = dict(zip(joints, duals, strict=False))
-        for j, amounts in zip(joints, moment_duals, strict=False):
-            motion.m[j] = amounts
-            moment = vector_sum(m * n for m, n in zip(amounts, motion.n, strict=True))
-            motion.o[j] = motion.named[moment] = self.book.define(
-                g.name(f"o_{j}"),
-                moment,
-                rf"\mathbf o_{{{j}}}",
-                f"moment part of reciprocal wrench {j}",
-                Law.RECIPROCITY,
-                unit=_MOMENT_PART[g.kind(j).is_angle],
-                body=self.tip_frame(),
-                reference="Sec. 2.2, joint table",
-                role=Role.RECIPROCAL,
-                joint=j,
-            )
+        o, named = self._moment_parts(joints, amounts, directions)
+        self._note_basis(vectors, duals, scales, rows, amounts)
+        w, m = (dict(zip(joints, parts, strict=False)) for parts in (duals, amounts))
+        left_out = [wrench for wrench in wrenches if wrench.acts]
+        return LegScrews(v, w, o, m, directions, left_out, gap, named)
+
+    def _moment_parts(
+        self, joints: list[int], amounts: list[list[Any]], directions: list[Any]
+    ) -> tuple[dict[int, Vector], dict[Any, Any]]:
+        """Moment parts of the reciprocal wrenches by joint, and what has these names."""
+        o: dict[int, Vector] = {}
+        named: dict[Any, Any] = {}
+        for j, own in zip(joints, amounts, strict=False):
+            moment = vector_sum(m * n for m, n in zip(own, directions, strict=True))
+            unit = _MOMENT_PART[self.g.kind(j).is_angle]
+            o[j] = named[moment] = self.eq("o_#", moment, j, body=self.tip_frame(), unit=unit)
+        return o, named
+
+    def _note_basis(
+        self,
+        vectors: list[Any],
+        duals: list[Any],
+        scales: list[Any],
+        rows: list[list[Any]],
+        amounts: list[list[Any]],
+    ) -> None:
+        """Tell the lowering what is reciprocal to what."""
+        g = self.g
         frames = tuple(dict.fromkeys(g.frame("axes", g.group[j]) for j in range(g.count, -1, -1)))
         self.book.bases.append(
             ReciprocalBasis(
@@ -295,248 +364,125 @@ class MotionWriter:
                 tuple(scales),
                 frames,
                 tuple(tuple(row) for row in rows),
-                tuple(tuple(m) for m in moment_duals),
+                tuple(tuple(m) for m in amounts),
                 g.size,
             )
         )
 
-    def _moment_directions(self) -> None:
+    def _moment_directions(self) -> list[Any]:
         """Directions of the moments that the platform joint transmits."""
-        for k, (link, platform) in enumerate(self.g.pairs, 1):
-            self.motion.n.append(
-                self.book.define(
-                    self.g.name(f"n_m{k}"),
-                    Cross(link, platform),
-                    rf"\mathbf n_{{m{k}}}",
-                    f"direction {k} of the moment that the platform joint transmits",
-                    Law.GEOMETRY,
-                    body=self.tip_frame(),
-                    reference="Sec. 2.2, joint table",
-                )
-            )
+        frame = self.tip_frame()
+        return [
+            self.eq("n_m#", Cross(link, platform), k, body=frame)
+            for k, (link, platform) in enumerate(self.g.pairs, 1)
+        ]
 
     def _define_wrenches(
         self, vectors: list[Any], rows: list[list[Any]], screws: list[_Screw]
     ) -> tuple[list[Any], list[list[Any]]]:
         """Reciprocal wrenches where the leg transmits moments."""
-        book, g = self.book, self.g
         columns = sp.Tuple(*vectors), sp.Tuple(*(sp.Tuple(*row) for row in rows))
         duals, moments = [], []
-        for k, screw in enumerate(screws):
-            duals.append(
-                book.define(
-                    g.name(screw.stem),
-                    DualVector(sp.Integer(k), *columns),
-                    screw.latex,
-                    f"force part of reciprocal wrench {k + 1}",
-                    Law.RECIPROCITY,
-                    unit=_FORCE_PART[screw.is_angle],
-                    body=self.tip_frame(),
-                    reference="Sec. 2.2, joint table",
-                    role=Role.RECIPROCAL,
-                    joint=screw.joint,
-                )
-            )
-            moments.append(
-                [
-                    book.define(
-                        g.name(f"m{i + 1}_{screw.stem}"),
-                        DualScalar(sp.Integer(k), sp.Integer(i), *columns),
-                        f"m_{{{k + 1}{i + 1}}}",
-                        f"moment part {i + 1} of reciprocal wrench {k + 1}",
-                        Law.RECIPROCITY,
-                        unit=_MOMENT_PART[screw.is_angle],
-                        reference="Sec. 2.2, joint table",
-                    )
-                    for i in range(len(rows))
-                ]
-            )
+        for k, screw in enumerate(screws, 1):
+            value = DualVector(sp.Integer(k - 1), *columns)
+            duals.append(self._reciprocal(k, screw, value, _WRENCH))
+            parts = range(1, len(rows) + 1)
+            moments.append([self._moment_part(k, i, screw, columns) for i in parts])
         return duals, moments
 
+    def _moment_part(self, k: int, i: int, screw: _Screw, columns: tuple[Any, Any]) -> Any:
+        value = DualScalar(sp.Integer(k - 1), sp.Integer(i - 1), *columns)
+        name = screw.stem.replace("#", str(screw.number))
+        return self.eq("m#_%", value, i, name, k, unit=_MOMENT_PART[screw.is_angle])
+
+    def _reciprocal(self, k: int, screw: _Screw, value: Any, facts: dict[str, str]) -> Any:
+        """Vector k reciprocal to the others."""
+        told = {name: text.format(k=k) for name, text in facts.items()}
+        unit, joint, body = _FORCE_PART[screw.is_angle], screw.joint, self.tip_frame()
+        return self.eq(
+            screw.stem, value, screw.number, k, unit=unit, joint=joint, body=body, **told
+        )
+
     def _define_duals(self, vectors: list[Any], screws: list[_Screw]) -> list[Any]:
-        book, g = self.book, self.g
-        duals = []
-        planar = len(vectors) == 2
-        if planar:
-            normal = plane_normal(book, g)
+        if len(vectors) == 2:
+            normal = plane_normal(self.book, self.g)
             others = [(vectors[1], normal), (normal, vectors[0])]
         else:
             others = [(vectors[(k + 1) % 3], vectors[(k + 2) % 3]) for k in range(3)]
-        for k, (vector, screw) in enumerate(zip(vectors, screws, strict=True)):
-            across = Cross(*others[k])
-            duals.append(
-                book.define(
-                    g.name(screw.stem),
-                    across / Dot(vector, across),
-                    screw.latex,
-                    f"reciprocal vector {k + 1}",
-                    Law.RECIPROCITY,
-                    unit=_FORCE_PART[screw.is_angle],
-                    body=self.tip_frame(),
-                    reference="Sec. 2.3",
-                    role=Role.RECIPROCAL,
-                    joint=screw.joint,
-                )
-            )
-        return duals
+        across = [Cross(*pair) for pair in others]
+        return [
+            self._reciprocal(k, screw, a / Dot(v, a), {})
+            for k, (v, a, screw) in enumerate(zip(vectors, across, screws, strict=True), 1)
+        ]
 
-    def _left_out(self, joints: list[int], missing: int, freedoms: Freedoms) -> list[LeftOut]:
+    def _left_out(
+        self, v: dict[int, Vector], joints: list[int], missing: int, freedoms: Freedoms
+    ) -> list[LeftOut]:
         """Wrenches that do no work along the leg's freedoms."""
+        book, g = self.book, self.g
         if missing == 0:
             return []
-        if not all(auxiliary.acts for auxiliary in self.g.completion):
-            return completed_wrenches(self.book, self.g, self.g.completion, freedoms)
-        if self.motion.n:
-            return wrenches_left_out(self.book, self.g, self.motion, joints, freedoms)
-        normals = directions_left_out(
-            self.book, self.g, self.motion, joints, missing, self.space.planar
-        )
+        if not all(auxiliary.acts for auxiliary in g.completion):
+            return completed_wrenches(book, g, g.completion, freedoms)
+        if freedoms.directions:
+            return wrenches_left_out(book, g, v, joints, freedoms)
+        normals = directions_left_out(book, g, v, joints, missing, self.space.planar)
         return [LeftOut(normal) for normal in normals]
 
-    def _rates(self) -> None:
-        g, book, motion = self.g, self.book, self.motion
-        extras = [j for j in range(1, g.count + 1) if g.is_extra(j)]
-        target: Vector = self.S_dot
-        turning: Vector = self.p.omega
-        for j in extras:
-            name = g.name(f"yd_{j}")
-            book.note_quantity(
-                Quantity(
-                    name,
-                    rf"\dot y_{{{j}}}",
-                    f"rate of extra joint {j}",
-                    f"{g.kind(j).unit}/s",
-                    role=Role.RATE,
-                    joint=j,
-                )
-            )
-            motion.qd[j] = sp.Symbol(name, real=True)
-            target = target - motion.qd[j] * motion.v[j]
-            turning = turning - motion.qd[j] * g.spin(j)
-        if extras:
-            target = book.define(
-                g.name("S_dot_rest"),
-                target,
-                r"\dot{\mathbf S}'",
-                "velocity of the connection point left to the joints that are not extra",
-                Law.RATE,
-                unit="m/s",
-            )
-        turns = [
-            book.define(
-                g.name(f"eta_{k}"),
-                Dot(n, turning),
-                rf"\eta_{{{k}}}",
-                f"rate at which the joints turn along moment direction {k}",
-                Law.RATE,
-                unit="rad/s",
-            )
-            for k, n in enumerate(motion.n, 1)
-        ]
-        for j, dual in motion.w.items():
-            motion.qd[j] = book.define(
-                g.name(f"qd_{j}"),
-                Dot(dual, target) + self._resolved(j, turns),
-                rf"\dot q_{{{j}}}",
-                f"rate of joint {j}",
-                Law.RECIPROCITY,
-                unit=f"{g.kind(j).unit}/s",
-                role=Role.RATE,
-                joint=j,
-            )
-        self._angular_velocities()
+    def _rates(self, screws: LegScrews, S_dot: Vector) -> dict[int, Any]:
+        """Joint rates."""
+        qd: dict[int, Any] = {}
+        target, turning = S_dot, self.p.omega
+        for j in self._extras():
+            qd[j] = self.eq.note("yd_#", j)
+            target = target - qd[j] * screws.v[j]
+            turning = turning - qd[j] * self.g.spin(j)
+        if qd:
+            target = self.eq("S_dot_rest", target)
+        turns = [self.eq("eta_#", Dot(n, turning), k) for k, n in enumerate(screws.n, 1)]
+        for j, dual in screws.w.items():
+            qd[j] = self.eq("qd_#", Dot(dual, target) + _resolved(screws, j, turns), j)
+        return qd
 
-    def _resolved(self, j: int, amounts: Sequence[Any]) -> Any:
-        """Part of joint j in what turns along the moment directions."""
-        return sp.Add(*(m * a for m, a in zip(self.motion.m.get(j, ()), amounts, strict=False)))
+    def _extras(self) -> list[int]:
+        return [j for j in range(1, self.g.count + 1) if self.g.is_extra(j)]
 
-    def _angular_velocities(self) -> None:
-        g, book, motion = self.g, self.book, self.motion
-        motion.omega[0], motion.spin[0] = ZeroVector, ZeroTensor
-        motion.slide[0] = self._slide_velocity(0)
+    def _angular_velocities(self, screws: LegScrews, qd: dict[int, Any]) -> LegRates:
+        g, omega, spin = self.g, {0: ZeroVector}, {0: ZeroTensor}
         for j in self.spans:
             if j == 0:
                 continue
-            previous = motion.omega[g.group[j - 1]]
-            frame = g.frame("axes", j)
-            motion.omega[j] = book.define(
-                g.name(f"omega_{j}"),
-                previous + motion.qd[j] * g.spin(j),
-                rf"\boldsymbol\omega_{{{j}}}",
-                f"angular velocity of link {j}",
-                Law.RATE,
-                unit="rad/s",
-                body=frame,
-            )
-            motion.spin[j] = book.define(
-                g.name(f"W_{j}"),
-                Compose(Skew(motion.omega[j]), Skew(motion.omega[j])),
-                rf"\mathbf W_{{{j}}}",
-                f"centripetal tensor of link {j}",
-                Law.DEFINITION,
-                unit="1/s^2",
-                body=frame,
-                symmetric=True,
-            )
-            motion.slide[j] = self._slide_velocity(j)
+            previous, frame = omega[g.group[j - 1]], g.frame("axes", j)
+            omega[j] = self.eq("omega_#", previous + qd[j] * g.spin(j), j, body=frame)
+            spin[j] = self.eq("W_#", Compose(Skew(omega[j]), Skew(omega[j])), j, body=frame)
+        slide = {group: self._slide_velocity(group, qd) for group in self.spans}
+        return LegRates(**vars(screws), qd=qd, omega=omega, spin=spin, slide=slide)
 
-    def _slide_velocity(self, group: int) -> Vector:
+    def _slide_velocity(self, group: int, qd: dict[int, Any]) -> Vector:
         """Velocity of sliding within a group."""
-        g = self.g
-        members = (j for j in range(1, g.count + 1) if g.group[j] == group)
-        return vector_sum(self.motion.qd[j] * g.slide(j) for j in members)
+        members = (j for j in range(1, self.g.count + 1) if self.g.group[j] == group)
+        return vector_sum(qd[j] * self.g.slide(j) for j in members)
 
     # ---- accelerations ---------------------------------------------------------------
 
-    def acceleration(self) -> None:
+    def acceleration(self, rates: LegRates) -> LegMotion:
         """Bias, accelerations of joints and links, and their linear forms."""
-        g, book, p, motion = self.g, self.book, self.p, self.motion
-        q = g.platform_point
-        motion.u_1 = ZeroVector
+        g, p = self.g, self.p
+        u_1: Vector = ZeroVector
         if self.space.rotates:
-            motion.u_1 = book.define(
-                g.name("u_1"),
-                Cross(p.omega, Cross(p.omega, q)),
-                r"\mathbf u_1",
-                "centripetal acceleration of the connection point",
-                Law.RATE,
-                unit="m/s^2",
-                body="base",
-                forms=(p.spin @ q,),
-                reference="Eq. 23",
-            )
-        motion.a_p = book.define(
-            g.name("a_p"),
-            p.t_ddot + Cross(p.alpha, q),
-            r"\mathbf a_p",
-            "acceleration of the connection point without its centripetal part",
-            Law.RATE,
-            unit="m/s^2",
-            body="base",
-            reference="Eq. 23",
-            role=Role.COLLECTED_ACCELERATION,
-        )
-        motion.unknowns.append(motion.a_p)
-        writer = LinearWriter(book, g, motion)
-        motion.S_ddot = book.define(
-            g.name("S_ddot"),
-            motion.a_p + motion.u_1,
-            r"\ddot{\mathbf S}",
-            "acceleration of the connection point",
-            Law.RATE,
-            unit="m/s^2",
-            body="base",
-            reference="Eq. 23",
-            forms=self._platform_form(),
-            role=Role.POINT_ACCELERATION,
-        )
-        motion.known[motion.S_ddot] = linear_form(
-            motion.a_p + motion.u_1, motion.unknowns, motion.known
-        )
-        bias = self._bias()
-        self._joint_accelerations(writer, bias)
-        self._angular_accelerations(writer)
-        self._origin_accelerations(writer)
+            q, forms = g.platform_point, (p.spin @ g.platform_point,)
+            u_1 = self.eq("u_1", Cross(p.omega, Cross(p.omega, q)), body="base", forms=forms)
+        a_p = self.eq("a_p", p.t_ddot + Cross(p.alpha, g.platform_point), body="base")
+        collection = Collection(a_p, [a_p], {}, rates.named)
+        self.eq.collect = LinearWriter(self.book, g, collection).define
+        S_ddot = self.eq("S_ddot", a_p + u_1, body="base", forms=self._platform_form())
+        collection.known[S_ddot] = linear_form(a_p + u_1, [a_p], {})
+        bias = self._bias(rates)
+        motion = self._joint_accelerations(rates, collection, S_ddot, bias)
+        self._angular_accelerations(motion, bias)
+        self.motion = motion
+        self._origin_accelerations(motion)
+        return motion
 
     def _platform_form(self) -> tuple[Vector, ...]:
         """The same acceleration by the platform's acceleration tensor."""
@@ -544,215 +490,115 @@ class MotionWriter:
             return ()
         return (self.p.t_ddot + self.p.tensor @ self.g.platform_point,)
 
-    beta: dict[int, Vector]
-
-    def _bias(self) -> Vector:
-        """Acceleration of the connection point at zero joint accelerations."""
-        g, book, motion = self.g, self.book, self.motion
-        self.coriolis: dict[int, Vector] = {0: ZeroVector}
-        beta = self.beta = {0: ZeroVector}
+    def _bias(self, rates: LegRates) -> _Bias:
+        """Accelerations at zero joint accelerations."""
+        g = self.g
+        coriolis: dict[int, Vector] = {0: ZeroVector}
+        beta: dict[int, Vector] = {0: ZeroVector}
         terms: list[Vector] = []
         forms: list[Vector] = []
         for j in self.spans:
             if j:
-                previous = g.group[j - 1]
-                turned = motion.qd[j] * Cross(motion.omega[previous], g.spin(j))
-                if turned != ZeroVector:
-                    turned = book.define(
-                        g.name(f"zeta_{j}"),
-                        turned,
-                        rf"\boldsymbol\zeta_{{{j}}}",
-                        f"angular acceleration of link {j} from the turning of axis {j}",
-                        Law.RATE,
-                        unit="rad/s^2",
-                        body=g.frame("axes", j),
-                    )
-                self.coriolis[j] = turned
-                beta[j] = self._named_sum(
-                    f"beta_{j}",
-                    beta[previous] + turned,
-                    rf"\boldsymbol\beta_{{{j}}}",
-                    f"angular acceleration of link {j} at zero joint accelerations",
-                    g.frame("axes", j),
-                )
-            span, omega = self.spans[j], motion.omega[j]
-            centripetal = Cross(beta[j], span) + Cross(omega, Cross(omega, span))
-            coriolis = Cross(omega, motion.slide[j]) * 2
-            terms.extend((centripetal, coriolis))
-            tensor = Skew(beta[j]) + motion.spin[j]
-            forms.extend((tensor @ span if tensor != ZeroTensor else ZeroVector, coriolis))
-        total = vector_sum(terms)
-        if total == ZeroVector:
-            return ZeroVector
-        named: Vector = book.define(
-            g.name("bias"),
-            total,
-            r"\mathfrak b",
-            "acceleration of the connection point at zero joint accelerations",
-            Law.RATE,
-            unit="m/s^2",
-            body=self.tip_frame(),
-            forms=(vector_sum(forms),),
-            reference="Sec. 2.2",
-            role=Role.BIAS,
-        )
-        return named
+                previous, frame = g.group[j - 1], g.frame("axes", j)
+                turned = rates.qd[j] * Cross(rates.omega[previous], g.spin(j))
+                coriolis[j] = self.eq.named("zeta_#", turned, j, body=frame)
+                beta[j] = self.eq.named("beta_#", beta[previous] + coriolis[j], j, body=frame)
+            span, omega = self.spans[j], rates.omega[j]
+            sliding = Cross(omega, rates.slide[j]) * 2
+            terms.extend((Cross(beta[j], span) + Cross(omega, Cross(omega, span)), sliding))
+            tensor = Skew(beta[j]) + rates.spin[j]
+            forms.extend((tensor @ span if tensor != ZeroTensor else ZeroVector, sliding))
+        total, seen = vector_sum(terms), (vector_sum(forms),)
+        point: Vector = ZeroVector
+        if total != ZeroVector:
+            point = self.eq("bias", total, body=self.tip_frame(), forms=seen)
+        return _Bias(point, coriolis, beta)
 
-    def _named_sum(self, stem: str, value: Vector, latex: str, title: str, frame: str) -> Vector:
-        if value == ZeroVector or isinstance(value, VectorSymbol):
-            return value
-        named: Vector = self.book.define(
-            self.g.name(stem), value, latex, title, Law.RATE, unit="rad/s^2", body=frame
-        )
-        return named
-
-    def _joint_accelerations(self, writer: LinearWriter, bias: Vector) -> None:
-        g, book, motion = self.g, self.book, self.motion
-        target: Vector = motion.S_ddot - bias
+    def _joint_accelerations(
+        self, rates: LegRates, collection: Collection, S_ddot: Vector, bias: _Bias
+    ) -> LegMotion:
+        """Accelerations of the joints; those of links and origins are still to be found."""
+        g, qdd = self.g, {}
+        target: Vector = S_ddot - bias.point
         turning: Vector = self.p.alpha
-        if motion.n and self.p.alpha != ZeroVector:
-            motion.unknowns.append(self.p.alpha)
-        for j in [j for j in range(1, g.count + 1) if g.is_extra(j)]:
-            name = g.name(f"ydd_{j}")
-            book.note_quantity(
-                Quantity(
-                    name,
-                    rf"\ddot y_{{{j}}}",
-                    f"acceleration of extra joint {j}",
-                    f"{g.kind(j).unit}/s^2",
-                    role=Role.JOINT_ACCELERATION,
-                    joint=j,
-                )
-            )
-            motion.ydd[j] = motion.qdd[j] = sp.Symbol(name, real=True)
-            motion.unknowns.append(motion.ydd[j])
-            target = target - motion.ydd[j] * motion.v[j]
-            turning = turning - motion.ydd[j] * g.spin(j)
-        if target != motion.S_ddot:
-            target = writer.define(
-                "rel",
-                target,
-                r"\ddot{\mathbf S}'",
-                "acceleration of the connection point left to the joint accelerations",
-                Law.RATE,
-                unit="m/s^2",
-                coefficient_latex=r"\mathbf E",
-                body=self.tip_frame(),
-            )
-        motion.relative = target
+        if rates.n and self.p.alpha != ZeroVector:
+            collection.unknowns.append(self.p.alpha)
+        for j in self._extras():
+            qdd[j] = self.eq.note("ydd_#", j)
+            collection.unknowns.append(qdd[j])
+            target = target - qdd[j] * rates.v[j]
+            turning = turning - qdd[j] * g.spin(j)
+        ydd = dict(qdd)
+        if target != S_ddot:
+            target = self.eq.collected("rel", target, body=self.tip_frame())
+        nu = self._orientation_bias(rates, bias.beta)
         turns = [
-            writer.define(
-                f"etad_{k}",
-                Dot(n, turning) + nu,
-                rf"\dot\eta_{{{k}}}",
-                f"acceleration with which the joints turn along moment direction {k}",
-                Law.RATE,
-                unit="rad/s^2",
-                coefficient_latex=rf"\boldsymbol\eta_{{{k}}}",
-            )
-            for k, (n, nu) in enumerate(zip(motion.n, self._orientation_bias(), strict=True), 1)
+            self.eq.collected("etad_#", Dot(n, turning) + own, k)
+            for k, (n, own) in enumerate(zip(rates.n, nu, strict=True), 1)
         ]
-        for j, dual in motion.w.items():
-            motion.qdd[j] = writer.define(
-                f"qdd_{j}",
-                Dot(dual, target) + self._resolved(j, turns),
-                rf"\ddot q_{{{j}}}",
-                f"acceleration of joint {j}",
-                Law.RECIPROCITY,
-                unit=f"{g.kind(j).unit}/s^2",
-                coefficient_latex=rf"\mathbf w_{{{j}}}",
-                reference="Eqs. 8, 9, 16",
-                role=Role.JOINT_ACCELERATION,
-                joint=j,
-            )
+        for j, dual in rates.w.items():
+            resolved = Dot(dual, target) + _resolved(rates, j, turns)
+            qdd[j] = self.eq.collected("qdd_#", resolved, j)
+        return LegMotion(
+            **vars(rates),
+            collection=collection,
+            S_ddot=S_ddot,
+            qdd=qdd,
+            ydd=ydd,
+            nu=nu,
+            relative=target,
+            alpha={0: ZeroVector},
+            acceleration_tensor={0: (ZeroTensor, ZeroTensor)},
+            origin_acceleration={0: ZeroVector},
+        )
 
-    def _orientation_bias(self) -> list[Any]:
+    def _orientation_bias(self, rates: LegRates, beta: dict[int, Vector]) -> list[Any]:
         """Per moment direction, what its turning adds to the angular acceleration along it."""
-        g, book, motion, p = self.g, self.book, self.motion, self.p
+        g, p = self.g, self.p
         last = g.group[g.count]
-        omega = motion.omega[last]
+        omega = rates.omega[last]
         found = []
-        for k, ((link, platform), n) in enumerate(zip(g.pairs, motion.n, strict=True), 1):
+        for k, ((link, platform), n) in enumerate(zip(g.pairs, rates.n, strict=True), 1):
             turning = Cross(Cross(omega, link), platform) + Cross(link, Cross(p.omega, platform))
-            rate = (
-                turning
-                if turning == ZeroVector
-                else book.define(
-                    g.name(f"nd_m{k}"),
-                    turning,
-                    rf"\dot{{\mathbf n}}_{{m{k}}}",
-                    f"rate of moment direction {k}",
-                    Law.RATE,
-                    unit="1/s",
-                    body=self.tip_frame(),
-                )
-            )
-            found.append(
-                book.define(
-                    g.name(f"nu_{k}"),
-                    Dot(rate, p.omega - omega) - Dot(n, self.beta[last]),
-                    rf"\nu_{{{k}}}",
-                    f"bias of the angular acceleration along moment direction {k}",
-                    Law.RATE,
-                    unit="rad/s^2",
-                    reference="Sec. 2.2, joint table",
-                )
-            )
-        motion.nu = found
+            rate = self.eq.named("nd_m#", turning, k, body=self.tip_frame())
+            found.append(self.eq("nu_#", Dot(rate, p.omega - omega) - Dot(n, beta[last]), k))
         return found
 
-    def _angular_accelerations(self, writer: LinearWriter) -> None:
-        g, book, motion = self.g, self.book, self.motion
-        motion.alpha[0] = ZeroVector
-        motion.acceleration_tensor[0] = (ZeroTensor, ZeroTensor)
+    def _angular_accelerations(self, motion: LegMotion, bias: _Bias) -> None:
+        g = self.g
         for j in self.spans:
             if j == 0:
                 continue
             previous = motion.alpha[g.group[j - 1]]
             frame = g.frame("axes", j)
-            rhs = previous + motion.qdd[j] * g.spin(j) + self.coriolis[j]
-            motion.alpha[j] = writer.define(
-                f"alpha_{j}",
+            rhs = previous + motion.qdd[j] * g.spin(j) + bias.coriolis[j]
+            motion.alpha[j] = self.eq.collected(
+                "alpha_#",
                 rhs,
-                rf"\boldsymbol\alpha_{{{j}}}",
-                f"angular acceleration of link {j}",
-                Law.RATE,
-                unit="rad/s^2",
-                coefficient_latex=rf"\boldsymbol\Omega_{{{j}}}",
+                j,
                 body=frame,
                 collected=not g.composite or j == g.group[g.count],
-                accelerated=self._turning(j),
+                accelerated=self._turning(motion, j),
             )
-            tensors = []
             rest = motion.known[motion.alpha[j]].remainder
-            for mark, alpha in (("", motion.alpha[j]), ("_o", rest)):
-                circle = r"^{\circ}" if mark else ""
-                tensors.append(
-                    book.define(
-                        g.name(f"B_{j}") + mark,
-                        Skew(alpha) + motion.spin[j],
-                        rf"\mathbf B{circle}_{{{j}}}",
-                        f"{'remainder of the ' if mark else ''}acceleration tensor of link {j}",
-                        Law.DEFINITION,
-                        unit="1/s^2",
-                        body=frame,
-                    )
-                )
-            motion.acceleration_tensor[j] = (tensors[0], tensors[1])
+            motion.acceleration_tensor[j] = (
+                self.eq("B_#", Skew(motion.alpha[j]) + motion.spin[j], j, body=frame),
+                self.eq("B_#_o", Skew(rest) + motion.spin[j], j, body=frame),
+            )
 
-    def _turning(self, group: int) -> Any:
+    def _turning(self, motion: LegMotion, group: int) -> Any:
         """What of the last link's angular acceleration the inertia at the tip needs."""
         g = self.g
         if not g.composite or group != g.group[g.count]:
             return None
-        return vector_sum(self.motion.qdd[j] * g.spin(j) for j in self.spans if j)
+        return vector_sum(motion.qdd[j] * g.spin(j) for j in self.spans if j)
 
     def point_acceleration(self, group: int, reach: Vector, slides: Sequence[int]) -> Any:
         """Acceleration of a point of a group: (rhs, form, form of the remainder)."""
         g, motion = self.g, self.motion
         omega = motion.omega[group]
         origin = motion.origin_acceleration[group]
-        rest = motion.known[origin].remainder if origin in motion.known else origin
+        rest = motion.collection.rest(origin)
         velocity = vector_sum(motion.qd[i] * g.slide(i) for i in slides)
         coriolis = Cross(omega, velocity) * 2
         sliding = vector_sum(motion.qdd[i] * g.slide(i) for i in slides)
@@ -770,25 +616,19 @@ class MotionWriter:
             vector_sum((rest, tensor_rest @ reach, coriolis, sliding_rest)),
         )
 
-    def _origin_accelerations(self, writer: LinearWriter) -> None:
+    def _origin_accelerations(self, motion: LegMotion) -> None:
         """Accelerations of the groups' origins, outwards (the last link is seen from the tip)."""
-        g, motion = self.g, self.motion
-        order = list(self.spans)
-        motion.origin_acceleration[order[0]] = ZeroVector
+        g, order = self.g, list(self.spans)
         for previous, j in pairwise(order):
             slides = [i for i in range(1, g.count + 1) if g.group[i] == previous and g.slides(i)]
             rhs, form, rest = self.point_acceleration(previous, self.spans[previous], slides)
             if rhs == ZeroVector or isinstance(rhs, VectorSymbol):
                 motion.origin_acceleration[j] = rhs
                 continue
-            motion.origin_acceleration[j] = writer.define(
-                f"a_o{j}",
+            motion.origin_acceleration[j] = self.eq.collected(
+                "a_o#",
                 rhs,
-                rf"\mathbf a_{{o{j}}}",
-                f"acceleration of the origin of joint {j}",
-                Law.RATE,
-                unit="m/s^2",
-                coefficient_latex=rf"\mathbf V_{{{j}}}",
+                j,
                 body=g.frame("axes", previous),
                 forms=(form,),
                 rest_forms=(rest,),

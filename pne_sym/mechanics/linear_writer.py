@@ -9,7 +9,7 @@ coordinates) put to zero.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import sympy as sp
@@ -27,68 +27,113 @@ from pne_sym.vector import (
 )
 
 
-@dataclass
-class LegMotion:
-    """Symbols of a leg's motion, by joint number or group.
+@dataclass(frozen=True)
+class LegScrews:
+    """How the joints of a leg move the connection point.
 
     Attributes:
-        a_p: acceleration of the connection point without its centripetal part.
-        u_1: centripetal acceleration of the connection point.
-        S_ddot: acceleration of the connection point.
         v: velocity vectors v_j of the joints at the connection point.
         w: reciprocal vectors w_j (without extra joints).
         o: moment parts of the reciprocal wrenches, where the leg transmits moments.
         m: the same as amounts along the moment directions.
         n: moment directions.
-        nu: biases of the angular acceleration along the moment directions.
         left_out: wrenches that do no work along the leg's freedoms.
-        qd, qdd: joint rates and accelerations.
-        omega, alpha: angular velocity and acceleration, by group.
-        spin: centripetal tensor omega~ omega~, by group.
-        acceleration_tensor: alpha~ + omega~ omega~, by group; its remainder.
-        slide: velocity with which the slides of a group move its far end, by group.
-        origin_acceleration: of the groups' origins, by group.
-        known: linear forms of everything that depends on the acceleration.
-        unknowns: a_p, the platform's alpha where moments are transmitted, and ydd.
-        ydd: accelerations of the extra coordinates, by joint.
         gap: from the connection point as the links reach it to the platform's.
-        relative: acceleration of the connection point less the bias.
         named: expressions that have a name, for coefficients that come out as such.
     """
 
-    a_p: Any = None
-    u_1: Any = None
-    S_ddot: Any = None
-    v: dict[int, Vector] = field(default_factory=dict)
-    w: dict[int, VectorSymbol] = field(default_factory=dict)
-    o: dict[int, Vector] = field(default_factory=dict)
-    m: dict[int, list[Any]] = field(default_factory=dict)
-    n: list[Any] = field(default_factory=list)
-    nu: list[Any] = field(default_factory=list)
-    left_out: list[LeftOut] = field(default_factory=list)
-    qd: dict[int, Any] = field(default_factory=dict)
-    qdd: dict[int, Any] = field(default_factory=dict)
-    omega: dict[int, Vector] = field(default_factory=dict)
-    alpha: dict[int, Vector] = field(default_factory=dict)
-    spin: dict[int, Any] = field(default_factory=dict)
-    acceleration_tensor: dict[int, Any] = field(default_factory=dict)
-    slide: dict[int, Vector] = field(default_factory=dict)
-    origin_acceleration: dict[int, Vector] = field(default_factory=dict)
-    known: dict[Any, LinearForm] = field(default_factory=dict)
-    unknowns: list[Any] = field(default_factory=list)
-    ydd: dict[int, Any] = field(default_factory=dict)
-    gap: Any = None
-    relative: Any = None
-    named: dict[Any, Any] = field(default_factory=dict)
+    v: dict[int, Vector]
+    w: dict[int, VectorSymbol]
+    o: dict[int, Vector]
+    m: dict[int, list[Any]]
+    n: list[Any]
+    left_out: list[LeftOut]
+    gap: Any
+    named: dict[Any, Any]
+
+
+@dataclass(frozen=True)
+class LegRates(LegScrews):
+    """Velocities of a leg, by joint number or group.
+
+    Attributes:
+        qd: joint rates.
+        omega: angular velocity, by group.
+        spin: centripetal tensor omega~ omega~, by group.
+        slide: velocity with which the slides of a group move its far end, by group.
+    """
+
+    qd: dict[int, Any]
+    omega: dict[int, Vector]
+    spin: dict[int, Any]
+    slide: dict[int, Vector]
+
+
+@dataclass(frozen=True)
+class Collection:
+    """What is written as coefficient times acceleration plus remainder.
+
+    Attributes:
+        a_p: acceleration of the connection point without its centripetal part.
+        unknowns: a_p, the platform's alpha where moments are transmitted, and ydd.
+        known: linear forms of everything that depends on the acceleration; it grows.
+        named: expressions that have a name, for coefficients that come out as such.
+    """
+
+    a_p: Any
+    unknowns: list[Any]
+    known: dict[Any, LinearForm]
+    named: dict[Any, Any]
+
+    def rest(self, symbol: Any) -> Any:
+        """Remainder of a quantity at zero acceleration."""
+        return self.known[symbol].remainder if symbol in self.known else symbol
+
+
+@dataclass(frozen=True)
+class LegMotion(LegRates):
+    """Motion of a leg, by joint number or group.
+
+    Attributes:
+        collection: what is known to depend on the acceleration.
+        S_ddot: acceleration of the connection point.
+        qdd: joint accelerations.
+        ydd: those of the extra coordinates, by joint.
+        nu: biases of the angular acceleration along the moment directions.
+        relative: acceleration of the connection point less the bias.
+        alpha: angular acceleration, by group.
+        acceleration_tensor: alpha~ + omega~ omega~, by group; its remainder.
+        origin_acceleration: of the groups' origins, by group.
+    """
+
+    collection: Collection
+    S_ddot: Any
+    qdd: dict[int, Any]
+    ydd: dict[int, Any]
+    nu: list[Any]
+    relative: Any
+    alpha: dict[int, Vector]
+    acceleration_tensor: dict[int, Any]
+    origin_acceleration: dict[int, Vector]
+
+    @property
+    def a_p(self) -> Any:
+        """Acceleration of the connection point without its centripetal part."""
+        return self.collection.a_p
+
+    @property
+    def known(self) -> dict[Any, LinearForm]:
+        """Linear forms of everything that depends on the acceleration."""
+        return self.collection.known
 
 
 class LinearWriter:
     """Defines quantities that depend on the acceleration, with their linear forms."""
 
-    def __init__(self, book: Book, g: LegGeometry, motion: LegMotion) -> None:
+    def __init__(self, book: Book, g: LegGeometry, collection: Collection) -> None:
         self.book = book
         self.g = g
-        self.motion = motion
+        self.collection = collection
 
     def define(
         self,
@@ -114,7 +159,7 @@ class LinearWriter:
         The coefficients are those of `accelerated`, an expression that depends on the
         acceleration as x does (default: rhs itself).  If not `collected`, nobody needs them.
         """
-        book, g, motion = self.book, self.g, self.motion
+        book, g, motion = self.book, self.g, self.collection
         name = g.name(stem)
         form = linear_form(rhs, motion.unknowns, motion.known)
         if not collected:
@@ -182,11 +227,11 @@ class LinearWriter:
 
         The words are the quantity's LaTeX, that of its first coefficient, and its title.
         """
-        value = self.motion.named.get(form.coefficients[unknown], form.coefficients[unknown])
+        value = self.collection.named.get(form.coefficients[unknown], form.coefficients[unknown])
         if isinstance(value, VectorSymbol | TensorSymbol | sp.Symbol) or not value.args:
             return value
         latex, coefficient_latex, title = words
-        first = unknown == self.motion.a_p
+        first = unknown == self.collection.a_p
         return self.book.define(
             f"d_{name}" if first else f"d{k}_{name}",
             value,

@@ -7,7 +7,7 @@ a residue of them, spoil nothing.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -70,8 +70,8 @@ def _short(length: float) -> float:
     return float(f"{length:.{_DIGITS - 1}e}")
 
 
-def define_size(book: Book, g: LegGeometry, home: HomeLengths) -> None:
-    """Introduce the length by which the leg's singularities are told.
+def with_size(book: Book, g: LegGeometry, home: HomeLengths) -> LegGeometry:
+    """The geometry with the length by which the leg's singularities are told.
 
     It is made of the offsets and pitches beyond the first joint that turns, which are live, and
     of a number fixed at generation: the lever arm that slides make at home, or what keeps the
@@ -79,7 +79,6 @@ def define_size(book: Book, g: LegGeometry, home: HomeLengths) -> None:
     """
     turning = [j for j in range(1, g.count + 1) if g.turns(j)]
     slides = any(g.slides(j) for j in range(min(turning, default=1), g.count + 1))
-    g.arm = home.arm
     squares = [_across_square(g, group, turning[0]) for group in turning]
     squares += [pitch**2 for pitch in g.pitch.values()]
     fixed = sp.Float(home.arm if slides else home.least)
@@ -93,7 +92,7 @@ def define_size(book: Book, g: LegGeometry, home: HomeLengths) -> None:
         fixed = book.define(
             g.name("size_0"), fixed, r"\ell_0", title, Law.LUMPING, unit="m", parameter=True
         )
-    g.size = book.define(
+    size = book.define(
         g.name("size"),
         sp.sqrt(fixed**2 + live) if live != 0 else fixed,
         r"\ell",
@@ -102,6 +101,7 @@ def define_size(book: Book, g: LegGeometry, home: HomeLengths) -> None:
         unit="m",
         parameter=True,
     )
+    return replace(g, size=size, arm=home.arm)
 
 
 def _across_square(g: LegGeometry, group: int, first: int) -> Any:

@@ -12,7 +12,7 @@ from pne_sym.derivation import Book, Equation
 from pne_sym.mechanics.completion import Auxiliary, completion_at_home
 from pne_sym.mechanics.derive import derive
 from pne_sym.mechanics.leg_geometry import build_geometry
-from pne_sym.mechanics.scales import SMALLEST, define_size, home_lengths, lever_arms
+from pne_sym.mechanics.scales import SMALLEST, home_lengths, lever_arms, with_size
 from pne_sym.mechanics.structure import leg_types
 from pne_sym.model.manipulator import ZERO3, Body, Home, Joint, Leg, Manipulator
 from pne_sym.vector.evaluate import evaluate
@@ -110,7 +110,7 @@ def completions(spec: Manipulator) -> list[tuple[Auxiliary, ...]]:
         book = Book()
         book.chapter("G", "", "")
         g = build_geometry(book, leg_type, "", planar=False)
-        define_size(book, g, home_lengths(spec, leg_type))
+        g = with_size(book, g, home_lengths(spec, leg_type))
         found.append(completion_at_home(spec, g))
     return found
 

@@ -1,0 +1,194 @@
+"""What the quantities of a leg are called: tables beside the equations that define them.
+
+A row has name | symbol | unit | law, role, marks | reference; below it stands the meaning.  The
+marks # % & stand for numbers, of joints mostly: `v_#` is `v_2` for joint 2.  What has no law
+is given; without a unit it has that of its right-hand side.  After a
+colon a name may say which of several rows it is.  After a semicolon stands
+the symbol of the first coefficient of what depends on the acceleration.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Protocol
+
+import sympy as sp
+
+from pne_sym.derivation import Book, Law, Quantity, Role
+from pne_sym.model.joint_kinds import JointKind
+from pne_sym.vector import VectorSymbol, ZeroVector
+
+_MARKS = "#%&"
+Collect = Callable[..., Any]
+"""Defines what depends on the acceleration: see `LinearWriter.define`."""
+
+
+@dataclass(frozen=True)
+class Term:
+    """A row of a table.
+
+    Attributes:
+        latex, unit, law, role, reference, meaning: of the quantity.
+        coefficient: LaTeX of its first coefficient.
+        parameter: it is constant: made of parameters alone.
+        symmetric: it is a symmetric tensor.
+    """
+
+    latex: str
+    unit: str
+    law: Law | None
+    role: Role | None
+    reference: str
+    meaning: str
+    coefficient: str = ""
+    parameter: bool = False
+    symmetric: bool = False
+
+    def numbered(self, numbers: Sequence[Any]) -> Term:
+        """With numbers in the places of the marks."""
+        latex, coefficient, meaning = (
+            filled(text, numbers) for text in (self.latex, self.coefficient, self.meaning)
+        )
+        return replace(self, latex=latex, coefficient=coefficient, meaning=meaning)
+
+
+def filled(text: str, numbers: Sequence[Any]) -> str:
+    """A text with numbers, or words, in the places of the marks."""
+    for mark, number in zip(_MARKS, numbers, strict=False):
+        text = text.replace(mark, str(number))
+    return text
+
+
+def glossary(table: str) -> dict[str, Term]:
+    """The rows of a table by name."""
+    found: dict[str, tuple[list[str], list[str]]] = {}
+    below: list[str] = []
+    for line in table.strip("\n").splitlines():
+        if line.startswith(" "):
+            below.append(line.strip())
+        else:
+            below = []
+            name, *cells = (cell.strip() for cell in line.split("|"))
+            found[name] = cells, below
+    return {name: _term(cells, " ".join(below)) for name, (cells, below) in found.items()}
+
+
+def _term(cells: list[str], meaning: str) -> Term:
+    latex, unit, facts, reference = (*cells, "", "")[:4]
+    latex, _, coefficient = (part.strip() for part in latex.partition(" ; "))
+    first, *words = facts.split()
+    law = None if first == "given" else Law[first]
+    roles = [Role[word] for word in words if word in Role.__members__]
+    return Term(
+        latex,
+        unit,
+        law,
+        roles[0] if roles else None,
+        reference,
+        meaning,
+        coefficient,
+        "constant" in words,
+        "symmetric" in words,
+    )
+
+
+class Named(Protocol):
+    """What tells names of leg types apart: see `leg_geometry.LegGeometry`."""
+
+    def name(self, stem: str) -> str:
+        """The stem with what tells it apart."""
+
+    def kind(self, j: int) -> JointKind:
+        """Kind of joint j."""
+
+
+class Writer:
+    """Writes equations of a leg: names, symbols and meanings stand in a table."""
+
+    def __init__(
+        self, book: Book, g: Named, table: Mapping[str, Term], collect: Collect | None = None
+    ) -> None:
+        self.book, self.g, self.table, self.collect = book, g, table, collect
+
+    def __call__(self, stem: str, rhs: Any, *numbers: Any, **facts: Any) -> Any:
+        """Define a quantity; returns its symbol.
+
+        Args:
+            stem: a name of the table.
+            rhs: what it is.
+            numbers: for the marks of its row.
+            facts: what `Book.define` takes besides, instead of the table's too.
+        """
+        name = self._name(stem, numbers)
+        latex, title, law, told = self._told(stem, numbers, facts)
+        return self.book.define(name, rhs, latex, title, law, **told)
+
+    def named(self, stem: str, rhs: Any, *numbers: Any, **facts: Any) -> Any:
+        """The same, unless it is zero or has a name already."""
+        if rhs in (0, ZeroVector) or isinstance(rhs, sp.Symbol | VectorSymbol):
+            return rhs
+        return self(stem, rhs, *numbers, **facts)
+
+    def collected(self, stem: str, rhs: Any, *numbers: Any, **facts: Any) -> Any:
+        """The same for what depends on the acceleration, with coefficients and remainder."""
+        assert self.collect is not None
+        term = self.table[stem].numbered(numbers)
+        latex, title, law, told = self._told(stem, numbers, facts)
+        del told["parameter"], told["symmetric"]
+        told["coefficient_latex"] = term.coefficient
+        return self.collect(filled(stem, numbers), rhs, latex, title, law, **told)
+
+    def _name(self, stem: str, numbers: Sequence[Any]) -> str:
+        """The name in this leg type; the mark of a remainder comes last."""
+        plain = filled(stem, numbers).partition(":")[0]
+        return self.g.name(plain.removesuffix("_o")) + "_o" * plain.endswith("_o")
+
+    def _told(
+        self, stem: str, numbers: Sequence[Any], facts: dict[str, Any]
+    ) -> tuple[str, str, Law, dict[str, Any]]:
+        """LaTeX, title, law and what else is told of a quantity."""
+        term = self.table[stem].numbered(numbers)
+        told = {
+            "unit": self._unit(term, numbers),
+            "reference": term.reference,
+            "role": term.role,
+            "joint": numbers[0] if term.role and numbers else 0,
+            "parameter": term.parameter,
+            "symmetric": term.symmetric,
+            **facts,
+        }
+        law = told.pop("law", term.law)
+        assert law is not None, stem
+        return told.pop("latex", term.latex), told.pop("title", term.meaning), law, told
+
+    def _unit(self, term: Term, numbers: Sequence[Any]) -> str:
+        """Its unit; U in the table is that of the joint's displacement."""
+        return (
+            term.unit.replace("U", self.g.kind(numbers[0]).unit) if "U" in term.unit else term.unit
+        )
+
+    def give(self, stem: str, frame: str, components: Iterable[Any], *numbers: Any) -> VectorSymbol:
+        """Introduce a vector with its components, fixed in a frame; returns its symbol."""
+        symbol = VectorSymbol(self._name(stem, numbers))
+        self.book.give(symbol, frame, tuple(components), self._quantity(stem, frame, numbers))
+        return symbol
+
+    def note(self, stem: str, *numbers: Any) -> sp.Symbol:
+        """Introduce a scalar that is an input; returns its symbol."""
+        quantity = self._quantity(stem, None, numbers)
+        self.book.note_quantity(quantity)
+        return sp.Symbol(quantity.name, real=True)
+
+    def _quantity(self, stem: str, body: str | None, numbers: Sequence[Any]) -> Quantity:
+        term = self.table[stem].numbered(numbers)
+        return Quantity(
+            self._name(stem, numbers),
+            term.latex,
+            term.meaning,
+            self._unit(term, numbers),
+            body,
+            term.parameter or body is not None,
+            role=term.role,
+            joint=numbers[0] if term.role and numbers else 0,
+        )
