@@ -11,8 +11,8 @@ from collections.abc import Iterable
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.c_text import (
+    PRINTER,
     WIDTH,
-    CPrinter,
     Routine,
     c_name,
     comment,
@@ -57,7 +57,7 @@ class Parts:
         self.bundle = bundle
         self.f = function
         self.name = function.name
-        self.printer = CPrinter()
+        self.printer = PRINTER
         self.titles = equation_titles(bundle.derivation)
         self.slices = slices(function)
         self.first, self.legs, self.last = (

@@ -12,6 +12,7 @@ from pne_sym.backends.scalar import PYTHON, ScalarPrinter, wrap
 from pne_sym.program.ir import Assignment
 
 WIDTH = 98
+_PRINTER = ScalarPrinter(PYTHON)
 
 
 class PythonText:
@@ -19,7 +20,7 @@ class PythonText:
 
     def __init__(self, bundle: Bundle, indent: int = 4) -> None:
         self.width = WIDTH - indent
-        self.printer = ScalarPrinter(PYTHON)
+        self.printer = _PRINTER
         self.titles = equation_titles(bundle.derivation)
 
     def of(self, expr: Any) -> str:
