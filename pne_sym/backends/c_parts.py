@@ -13,6 +13,7 @@ from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.c_text import (
     PRINTER,
     WIDTH,
+    CPrinter,
     Routine,
     c_name,
     comment,

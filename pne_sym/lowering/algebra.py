@@ -7,7 +7,21 @@ from typing import Any
 
 import sympy as sp
 
+from pne_sym.program.ir import Stage
+
 _KEPT = 1 << 16  # more than the statements of any model
+
+
+@lru_cache(_KEPT)
+def symbol(name: str) -> Any:
+    """A real symbol."""
+    return sp.Symbol(name, real=True)
+
+
+@lru_cache(_KEPT)
+def joined(stages: frozenset[Stage]) -> Stage:
+    """The stage of what is made of values of these stages."""
+    return Stage.join(stages)
 
 
 @lru_cache(_KEPT)

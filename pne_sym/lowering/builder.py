@@ -102,7 +102,7 @@ class Builder:
 
     def stage_of(self, expr: Any) -> Stage:
         """Stage at which an expression can be computed."""
-        return Stage.join(self._stage[s] for s in algebra.symbols(expr))
+        return algebra.joined(frozenset(self._stage[s] for s in algebra.symbols(expr)))
 
     def _fresh(self, hint: str) -> str:
         """A name that no other symbol has: the hint, or the hint and a number."""
@@ -144,7 +144,7 @@ class Builder:
         key: Any = None,
     ) -> sp.Symbol:
         hint = hint or f"{self.quantity_of.get(self.equation, 'v')}_t"
-        symbol = sp.Symbol(self._fresh(hint), real=True)
+        symbol = algebra.symbol(self._fresh(hint))
         self._stage[symbol] = stage
         statement = Statement(symbol, expr, stage, self.equation, total_of, named, hint)
         self.statements.append(statement)
@@ -204,9 +204,11 @@ class Builder:
             sign, symbol = algebra.signed(term)
             made = self.of.get(symbol)
             is_sum = made is not None and made.expr.is_Add and not made.total_of
-            inner.append(sign * made.expr if made is not None and is_sum else None)
-        known = any(expr is not None for expr in inner)
-        return algebra.opened(total, tuple(inner)) if known else total
+            expr = made.expr if made is not None and is_sum else None
+            inner.append(algebra.negative(expr) if expr is not None and sign == -1 else expr)
+        if all(expr is None for expr in inner):
+            return total
+        return algebra.opened(total, tuple(inner))
 
     def difference(self, a: Atom, b: Atom) -> Atom:
         """a - b; of two named sums only what does not cancel."""
@@ -313,7 +315,7 @@ class Builder:
         """Terms of a named sum, with a sign; the atom itself where it is none."""
         if a.is_Number:
             return [outer * a]
-        sign, symbol = (-1, -a) if a.could_extract_minus_sign() else (1, a)
+        sign, symbol = algebra.signed(a)
         made = self.of.get(symbol)
         if made is None or made.total_of or not made.expr.is_Add:
             return [outer * a]
