@@ -6,7 +6,7 @@ import math
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.c_parts import statements
-from pne_sym.backends.c_text import CPrinter, c_name, comment, indented, listing, statement
+from pne_sym.backends.c_text import PRINTER, c_name, comment, indented, listing, statement
 from pne_sym.backends.describe import equation_titles, field_views
 from pne_sym.derivation import ParameterField, Rule
 from pne_sym.program.ir import Block
@@ -62,7 +62,7 @@ def model_fields(bundle: Bundle) -> list[str]:
 class _Preparation:
     def __init__(self, bundle: Bundle) -> None:
         self.bundle = bundle
-        self.printer = CPrinter()
+        self.printer = PRINTER
         self.titles = equation_titles(bundle.derivation)
 
     def body(self) -> list[str]:

@@ -11,6 +11,7 @@ from collections.abc import Iterable
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.c_text import (
+    PRINTER,
     WIDTH,
     CPrinter,
     Routine,
@@ -57,7 +58,7 @@ class Parts:
         self.bundle = bundle
         self.f = function
         self.name = function.name
-        self.printer = CPrinter()
+        self.printer = PRINTER
         self.titles = equation_titles(bundle.derivation)
         self.slices = slices(function)
         self.first, self.legs, self.last = (

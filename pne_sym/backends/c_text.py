@@ -60,6 +60,9 @@ class CPrinter(ScalarPrinter):
         return str(self.doprint(sp.sympify(expr)))
 
 
+PRINTER = CPrinter()
+
+
 def comment_text(text: str) -> str:
     """Text that cannot end or open a comment."""
     return " ".join(text.replace("*/", "* /").replace("/*", "/ *").split())

@@ -7,6 +7,7 @@ from pne_sym.backends.scalar import PYTHON, ScalarPrinter, wrap
 from pne_sym.backends.straight import StraightText
 
 WIDTH = 98
+_PRINTER = ScalarPrinter(PYTHON)
 
 
 class PythonText(StraightText):
@@ -17,7 +18,7 @@ class PythonText(StraightText):
     def __init__(
         self, bundle: Bundle, printer: ScalarPrinter | None = None, indent: int = 4
     ) -> None:
-        super().__init__(bundle, printer or ScalarPrinter(PYTHON))
+        super().__init__(bundle, printer or _PRINTER)
         self.width = WIDTH - indent
 
     def assign(self, target: str, value: str) -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import sympy as sp
@@ -35,6 +36,11 @@ class ScalarPrinter(StrPrinter):
     def __init__(self, dialect: Dialect) -> None:
         super().__init__({"order": "none"})
         self.dialect = dialect
+        self._text = lru_cache(1 << 16)(super().doprint)
+
+    def doprint(self, expr: Any) -> str:
+        """The text; functions share statements, so that it is kept."""
+        return str(self._text(expr))
 
     def _print_Symbol(self, expr: Any) -> str:
         return str(expr.name)

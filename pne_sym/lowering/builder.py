@@ -13,6 +13,8 @@ from typing import Any
 
 import sympy as sp
 
+from pne_sym.lowering import algebra
+from pne_sym.lowering.algebra import operations, terms_of
 from pne_sym.program.ir import Stage
 
 Atom = Any  # sympy Symbol, -Symbol or Number
@@ -100,7 +102,7 @@ class Builder:
 
     def stage_of(self, expr: Any) -> Stage:
         """Stage at which an expression can be computed."""
-        return Stage.join(self._stage[s] for s in expr.free_symbols)
+        return algebra.joined(frozenset(self._stage[s] for s in algebra.symbols(expr)))
 
     def _fresh(self, hint: str) -> str:
         """A name that no other symbol has: the hint, or the hint and a number."""
@@ -121,15 +123,15 @@ class Builder:
             return expr
         if expr.is_Mul and len(expr.args) == 2 and expr.args[0] == -1 and expr.args[1].is_Symbol:
             return expr
-        sign = -1 if expr.could_extract_minus_sign() else 1
-        key = sign * expr
+        sign, key = algebra.signed(expr)
         known = self._value.get(key)
         if known is not None:
-            return sign * known
+            return known if sign == 1 else algebra.negative(known)
         if not hint:  # only what has a name keeps its sign: names do not lie
-            return sign * self._record(key, self.stage_of(expr), hint, named)
+            made = self._record(key, self.stage_of(expr), hint, named)
+            return made if sign == 1 else algebra.negative(made)
         symbol = self._record(expr, self.stage_of(expr), hint, named, key=key)
-        self._value[key] = sign * symbol
+        self._value[key] = symbol if sign == 1 else algebra.negative(symbol)
         return symbol
 
     def _record(
@@ -142,7 +144,7 @@ class Builder:
         key: Any = None,
     ) -> sp.Symbol:
         hint = hint or f"{self.quantity_of.get(self.equation, 'v')}_t"
-        symbol = sp.Symbol(self._fresh(hint), real=True)
+        symbol = algebra.symbol(self._fresh(hint))
         self._stage[symbol] = stage
         statement = Statement(symbol, expr, stage, self.equation, total_of, named, hint)
         self.statements.append(statement)
@@ -184,7 +186,7 @@ class Builder:
             return present[0] if present else sp.S.Zero
         key = ("sum", *present)
         if key not in self._value:
-            self._remember(key, self.let(self._opened(sp.Add(*present)), hint, named=named))
+            self._remember(key, self.let(self._opened(algebra.total(*present)), hint, named=named))
         return self._value[key]
 
     def _remember(self, key: Any, value: Atom) -> Atom:
@@ -197,27 +199,22 @@ class Builder:
         """The sum with named sums in it opened, where terms then cancel."""
         if not total.is_Add or len(total.args) > 6:
             return total
-        opened = total
+        inner = []
         for term in total.args:
-            sign, symbol = (-1, -term) if term.could_extract_minus_sign() else (1, term)
+            sign, symbol = algebra.signed(term)
             made = self.of.get(symbol)
-            if made is not None and made.expr.is_Add and not made.total_of:
-                opened = opened - term + sign * made.expr
-        best: Any = total
-        for term in total.args:
-            sign, symbol = (-1, -term) if term.could_extract_minus_sign() else (1, term)
-            made = self.of.get(symbol)
-            if made is not None and made.expr.is_Add and not made.total_of:
-                one = total - term + sign * made.expr
-                if _terms_of(one) < _terms_of(best):
-                    best = one
-        return opened if _terms_of(opened) < _terms_of(best) else best
+            is_sum = made is not None and made.expr.is_Add and not made.total_of
+            expr = made.expr if made is not None and is_sum else None
+            inner.append(algebra.negative(expr) if expr is not None and sign == -1 else expr)
+        if all(expr is None for expr in inner):
+            return total
+        return algebra.opened(total, tuple(inner))
 
     def difference(self, a: Atom, b: Atom) -> Atom:
         """a - b; of two named sums only what does not cancel."""
         terms = [t for atom, sign in ((a, 1), (b, -1)) for t in self._terms(atom, sign)]
-        total = sp.Add(*terms)
-        return self.let(total if _terms_of(total) <= 2 else a - b)
+        total = algebra.total(*terms)
+        return self.let(total if terms_of(total) <= 2 else a - b)
 
     def mul(self, a: Atom, b: Atom, hint: str = "", *, named: bool = False) -> Atom:
         """Product of atoms; x/b times b is x."""
@@ -232,22 +229,22 @@ class Builder:
 
     def _product(self, a: Atom, b: Atom, hint: str, *, named: bool) -> Atom:
         if a.is_Number or b.is_Number:
-            return self.let(a * b, hint, named=named)
+            return self.let(algebra.product(a, b), hint, named=named)
         if a == b:
             square = self._square_of_root(a)
             if square is not None:
                 return square
         sign = 1
         if a.is_Mul:
-            a, sign = -a, -sign
+            a, sign = algebra.negative(a), -sign
         if b.is_Mul:
-            b, sign = -b, -sign
+            b, sign = algebra.negative(b), -sign
         cancelled = self._cancel(a, b)
         if cancelled is None:
             cancelled = self._cancel(b, a)
         if cancelled is None:
-            cancelled = self.let(a * b, hint, named=named)
-        return sign * cancelled
+            cancelled = self.let(algebra.product(a, b), hint, named=named)
+        return cancelled if sign == 1 else algebra.negative(cancelled)
 
     def _square_of_root(self, a: Atom) -> Atom | None:
         """x for a = sign sqrt(x)."""
@@ -270,13 +267,13 @@ class Builder:
         made = self.of.get(a)
         if made is None or made.total_of:
             return None
-        inverse = self._value.get(1 / b)
+        inverse = self._value.get(algebra.inverse(b))
         base = self._base_of_inverse(b)
         factors = made.expr.args if made.expr.is_Mul else (made.expr,)
         for wanted in (inverse, base):
             if wanted is not None and wanted in factors:
-                return self.let(made.expr / wanted)
-        if made.expr == 1 / b:
+                return self.let(algebra.quotient(made.expr, wanted))
+        if made.expr == algebra.inverse(b):
             return sp.S.One
         return None
 
@@ -295,7 +292,7 @@ class Builder:
         made = self.of.get(a)
         if made is not None and made.expr.is_Pow and made.expr.exp == -1:
             return made.expr.base
-        return self.let(1 / a, f"inv_{a.name}")
+        return self.let(algebra.inverse(a), f"inv_{a.name}")
 
     def divide(self, a: Atom, b: Atom, hint: str = "", *, named: bool = False) -> Atom:
         """a / b; where terms of a hold the factor b it cancels term by term."""
@@ -318,7 +315,7 @@ class Builder:
         """Terms of a named sum, with a sign; the atom itself where it is none."""
         if a.is_Number:
             return [outer * a]
-        sign, symbol = (-1, -a) if a.could_extract_minus_sign() else (1, a)
+        sign, symbol = algebra.signed(a)
         made = self.of.get(symbol)
         if made is None or made.total_of or not made.expr.is_Add:
             return [outer * a]
@@ -332,7 +329,7 @@ class Builder:
         made = self.of.get(term) if term.is_Symbol else None
         product = made.expr if made is not None and not made.total_of else term
         if product.is_Mul and b in product.args:
-            return sign * self.let(product / b)
+            return sign * self.let(algebra.quotient(product, b))
         return None
 
     # ---- trials ----------------------------------------------------------------------
@@ -398,37 +395,11 @@ class Builder:
 
     def _reach(self, atoms: Iterable[Atom]) -> list[Statement]:
         found: dict[sp.Symbol, Statement] = {}
-        stack = [s for atom in atoms for s in sp.sympify(atom).free_symbols]
+        stack = [s for atom in atoms for s in algebra.symbols(sp.sympify(atom))]
         while stack:
             symbol = stack.pop()
             if symbol in found or symbol in self.live or symbol not in self.of:
                 continue
             found[symbol] = self.of[symbol]
-            stack.extend(self.of[symbol].expr.free_symbols)
+            stack.extend(algebra.symbols(self.of[symbol].expr))
         return list(found.values())
-
-
-def _terms_of(expr: Any) -> int:
-    """Number of terms of a sum, each numeric factor other than a sign counted too."""
-    terms = sp.Add.make_args(expr)
-    return len(terms) + sum(abs(t.as_coeff_Mul()[0]) != 1 for t in terms) if expr != 0 else 0
-
-
-def operations(expr: Any) -> int:
-    """Additions, multiplications, divisions, roots and trigonometric calls of an expression."""
-    if expr.is_Symbol or expr.is_Number:
-        return 0
-    inner = sum(operations(arg) for arg in expr.args)
-    if expr.is_Add:
-        return inner + len(expr.args) - 1
-    if expr.is_Mul:
-        factors = [a for a in expr.args if a not in (1, -1)]
-        return inner + len(factors) - 1
-    if expr.is_Pow:
-        exponent = expr.exp
-        if exponent.is_Integer and exponent > 0:
-            return inner + int(exponent) - 1
-        if exponent == sp.Rational(-1, 2):
-            return inner + 2
-        return inner + 1
-    return inner + 1

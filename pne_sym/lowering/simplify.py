@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 from typing import Any
 
 import sympy as sp
 
-from pne_sym.lowering.builder import Statement, operations
+from pne_sym.lowering.algebra import operations, symbols
+from pne_sym.lowering.builder import Statement
 from pne_sym.program.ir import Stage, Store
 
 _LONGEST = 14  # operations in one statement: beyond it lines get hard to read
@@ -21,7 +23,7 @@ def inline_single_use(
     """Put unnamed values that are used once into the statement that uses them."""
     uses: dict[Any, int] = {}
     for statement in statements:
-        for symbol in statement.expr.free_symbols:
+        for symbol in symbols(statement.expr):
             uses[symbol] = uses.get(symbol, 0) + _occurrences(statement.expr, symbol)
     for _, store in stores:
         for symbol in sp.sympify(store.value).free_symbols:
@@ -31,7 +33,7 @@ def inline_single_use(
             uses[symbol] = uses.get(symbol, 0) + 2
     inlined: dict[Any, Any] = {}
     kept: list[Statement] = []
-    users = {symbol: s for s in statements for symbol in s.expr.free_symbols}
+    users = {symbol: s for s in statements for symbol in symbols(s.expr)}
     for statement in statements:
         expr = _substitute(statement.expr, inlined)
         user = users.get(statement.target)
@@ -71,7 +73,7 @@ def _needed(
     for statement in reversed(statements):
         if statement.target in wanted:
             found.append(statement)
-            wanted |= statement.expr.free_symbols
+            wanted |= symbols(statement.expr)
     return found[::-1]
 
 
@@ -113,15 +115,17 @@ def renamed(
     )
 
 
+@lru_cache(1 << 16)
 def _occurrences(expr: Any, symbol: Any) -> int:
     if expr == symbol:
         return 1
     return sum(_occurrences(arg, symbol) for arg in expr.args)
 
 
+@lru_cache(1 << 16)  # functions share statements
 def _fits(user: Any, target: Any, expr: Any) -> bool:
     """Whether SymPy keeps the operation count when the value is put in place."""
-    combined = user.xreplace({target: expr})
+    combined = _replaced(user, frozenset({(target, expr)}))
     if combined.has(sp.Abs):  # what SymPy makes of the root of a square; programs have no such node
         return False
     if any(abs(p.exp) != sp.Rational(1, 2) for p in combined.atoms(sp.Pow) if not p.exp.is_Integer):
@@ -132,5 +136,10 @@ def _fits(user: Any, target: Any, expr: Any) -> bool:
 
 
 def _substitute(expr: Any, inlined: dict[Any, Any]) -> Any:
-    replacement = {s: inlined[s] for s in expr.free_symbols if s in inlined}
-    return expr.xreplace(replacement) if replacement else expr
+    found = frozenset((s, inlined[s]) for s in symbols(expr) if s in inlined)
+    return _replaced(expr, found) if found else expr
+
+
+@lru_cache(1 << 16)
+def _replaced(expr: Any, pairs: frozenset[tuple[Any, Any]]) -> Any:
+    return expr.xreplace(dict(pairs))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import lru_cache
 from typing import Any
 
 import sympy as sp
@@ -10,6 +11,7 @@ import sympy as sp
 from pne_sym.program.ir import Block, Counts, Function
 
 
+@lru_cache(1 << 16)  # functions share statements, and several texts state the counts of each
 def count_expression(expr: Any) -> Counts:
     """Operations of a scalar expression as it is printed (powers as products)."""
     if expr.is_Symbol or expr.is_Number:

@@ -9,15 +9,16 @@ import sys
 import threading
 from array import array
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from pne_sym.backends.ext import ExtBackend
+from pne_sym.backends import registry
+from pne_sym.backends.emission import emit_target
+from pne_sym.backends.ext.header import entries
+from pne_sym.backends.ext.public import Bindings
 from pne_sym.backends.target import TargetError
-from pne_sym.program.public import PublicFunction
 from tests import models
 from tests.backends.ext_module import assert_alike, assert_all_alike, pair
 from tests.targets.modules import functions, vectors
@@ -292,8 +293,10 @@ def test_nothing_is_kept_of_a_call() -> None:
 
 def test_what_the_header_lacks_is_refused() -> None:
     bundle = models.bundle(models.catalogue("planar_3rpr"))
-    more = replace(bundle.program.public[0], name="extra")
-    assert isinstance(more, PublicFunction)
-    program = replace(bundle.program, public=(*bundle.program.public, more))
-    with pytest.raises(TargetError, match=r"the target ext cannot print extra: planar_3rpr\.h"):
-        ExtBackend().emit(replace(bundle, program=program))
+    (text,) = (t for n, t in emit_target(bundle, registry.target("c")).items() if n.endswith(".h"))
+    known = entries(text, bundle.name)
+    for name in ("M", "pose", "inverse_dynamics"):
+        rest = {n: e for n, e in known.items() if n != name}
+        with pytest.raises(TargetError, match=f"ext cannot print {name}: {bundle.name}.h has no"):
+            Bindings(bundle, rest)
+    assert [f.name for f, _ in Bindings(bundle, known).bound] == list(known)

@@ -1,0 +1,115 @@
+"""What SymPy makes of expressions, kept: trials build the same ones again and again."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any
+
+import sympy as sp
+
+from pne_sym.program.ir import Stage
+
+_KEPT = 1 << 16  # more than the statements of any model
+
+
+@lru_cache(_KEPT)
+def symbol(name: str) -> Any:
+    """A real symbol."""
+    return sp.Symbol(name, real=True)
+
+
+@lru_cache(_KEPT)
+def joined(stages: frozenset[Stage]) -> Stage:
+    """The stage of what is made of values of these stages."""
+    return Stage.join(stages)
+
+
+@lru_cache(_KEPT)
+def product(a: Any, b: Any) -> Any:
+    """a b."""
+    return a * b
+
+
+@lru_cache(_KEPT)
+def quotient(a: Any, b: Any) -> Any:
+    """a / b."""
+    return a / b
+
+
+@lru_cache(_KEPT)
+def inverse(a: Any) -> Any:
+    """1 / a."""
+    return 1 / a
+
+
+@lru_cache(_KEPT)
+def negative(a: Any) -> Any:
+    """-a."""
+    return -a
+
+
+@lru_cache(_KEPT)
+def total(*terms: Any) -> Any:
+    """The sum."""
+    return sp.Add(*terms)
+
+
+@lru_cache(_KEPT)
+def signed(expr: Any) -> tuple[int, Any]:
+    """A sign, and the expression without it: both of x - y and y - x give the same one."""
+    return (-1, -expr) if expr.could_extract_minus_sign() else (1, expr)
+
+
+@lru_cache(_KEPT)
+def symbols(expr: Any) -> frozenset[Any]:
+    """The symbols in it."""
+    return frozenset(expr.free_symbols)
+
+
+@lru_cache(_KEPT)
+def opened(whole: Any, inner: tuple[Any, ...]) -> Any:
+    """A sum with sums in place of some of its terms, where terms then cancel.
+
+    Args:
+        whole: the sum.
+        inner: for each of its terms in order a sum that is equal to it, or None.
+    """
+    found = whole
+    for term, expr in zip(whole.args, inner, strict=True):
+        if expr is not None:
+            found = found - term + expr
+    best: Any = whole
+    for term, expr in zip(whole.args, inner, strict=True):
+        if expr is not None:
+            one = whole - term + expr
+            if terms_of(one) < terms_of(best):
+                best = one
+    return found if terms_of(found) < terms_of(best) else best
+
+
+@lru_cache(_KEPT)
+def terms_of(expr: Any) -> int:
+    """Number of terms of a sum, each numeric factor other than a sign counted too."""
+    terms = sp.Add.make_args(expr)
+    return len(terms) + sum(abs(t.as_coeff_Mul()[0]) != 1 for t in terms) if expr != 0 else 0
+
+
+@lru_cache(_KEPT)
+def operations(expr: Any) -> int:
+    """Additions, multiplications, divisions, roots and trigonometric calls of an expression."""
+    if expr.is_Symbol or expr.is_Number:
+        return 0
+    inner = sum(map(operations, expr.args))
+    if expr.is_Add:
+        return inner + len(expr.args) - 1
+    if expr.is_Mul:
+        factors = [a for a in expr.args if a not in (1, -1)]
+        return inner + len(factors) - 1
+    if expr.is_Pow:
+        exponent = expr.exp
+        if exponent.is_Integer and exponent > 0:
+            return inner + int(exponent) - 1
+        if exponent == sp.Rational(-1, 2):
+            return inner + 2
+        return inner + 1
+    return inner + 1
