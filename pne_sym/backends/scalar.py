@@ -113,7 +113,7 @@ class ScalarPrinter(StrPrinter):
         return "*".join([factor] * int(exponent))
 
     def parenthesize(self, item: Any, level: int, strict: bool = False) -> str:
-        """Parentheses where precedence needs them; behind / for powers too, which are products."""
+        """Parentheses where the precedence needs them; for powers, which are products, behind /."""
         own, text = precedence(item), self._print(item)
         return (
             f"({text})"

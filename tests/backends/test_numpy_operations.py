@@ -122,6 +122,20 @@ def test_they_are_what_is_defined(operation: str, states: int) -> None:
             np.testing.assert_allclose(*rows, rtol=1e-11, atol=1e-12, err_msg=str(shapes))
 
 
+def test_rows_of_rounding_are_no_directions() -> None:
+    """Nor in the module: rows that vanish on the others are the same with and without rounding."""
+    k = np.random.default_rng(0).normal(size=(2, 6, 3))
+    k[0, 2] = 0.0
+    k[1] = k[0]
+    k[1, 2] = 1e-17 * np.arange(1.0, 4.0)
+    _, idle = printed("resolve", ((6, 3),), (3,), [k])
+    _, wanted = OPERATIONS["resolve"]((k,), (3,))
+    for rows in (idle, wanted):
+        assert np.abs(rows @ k).max() < 1e-14
+    np.testing.assert_allclose(*(np.swapaxes(v, 1, 2) @ v for v in (idle, wanted)), atol=1e-12)
+    np.testing.assert_allclose(*(np.swapaxes(v, 0, 1) @ v for v in idle), atol=1e-9)
+
+
 def test_a_module_has_what_it_needs_and_no_more() -> None:
     text = needed(support(), ["y = _singular_values(x)"])
     assert "def _matrices(" in text

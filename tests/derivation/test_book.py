@@ -57,12 +57,13 @@ def test_what_nothing_needs_is_left_out_and_the_rest_numbered_anew() -> None:
     define(found, "idle", a + b)
     through_form = define(found, "f", a - b)
     in_condition = define(found, "size", Dot(a, a))
+    in_scale = define(found, "scale", Dot(b, b))
     last = define(
         found,
         "last",
         Dot(needed, x),
         forms=(Dot(through_form, x),),
-        conditions=(Condition(Trouble.SINGULAR, in_condition, sp.S.One),),
+        conditions=(Condition(Trouble.SINGULAR, in_condition, in_scale),),
     )
     found.chapter("d-", "Dynamics", "")
     define(found, "unused", b - a)
@@ -71,7 +72,8 @@ def test_what_nothing_needs_is_left_out_and_the_rest_numbered_anew() -> None:
         ("k-1", "c"),
         ("k-2", "f"),
         ("k-3", "size"),
-        ("k-4", "last"),
+        ("k-4", "scale"),
+        ("k-5", "last"),
     ]
     assert [chapter.id for chapter in derivation.chapters] == ["k-"]
     assert derivation.definition("c").rhs == Cross(a, b)

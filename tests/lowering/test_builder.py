@@ -145,6 +145,27 @@ def test_parameters_and_numbers_need_no_guard() -> None:
     assert [guard.value for guard in b.guards] == [x]
 
 
+def test_a_guard_stands_where_its_value_and_its_scale_are_known() -> None:
+    b = Builder()
+    leg = b.declare(sp.Symbol("l", real=True), Stage(Kind.PARAMETER_LEG, "rr"))
+    (x,) = inputs(b, {"x": 1.0})
+    b.guard("singular", x, leg, 1)
+    b.guard("singular", b.mul(x, leg), sp.S.One, 2)
+    assert [guard.stage for guard in b.guards] == [Stage(Kind.STATE_LEG, "rr")] * 2
+
+
+def test_of_a_root_with_a_sign_the_square_is_what_stands_under_it() -> None:
+    b = Builder()
+    x, y, sign = inputs(b, {"x": 1.0, "y": 2.0, "sign": -1.0})
+    b.signs.add(sign)
+    root = b.let(sp.sqrt(b.add((x, y))))
+    signed, scaled = b.mul(sign, root), b.mul(x, root)
+    assert b.mul(signed, signed) == b.add((x, y))
+    assert value(b.mul(scaled, scaled), run(b.statements, {x: 3.0, y: 2.0, sign: -1.0})) == (
+        pytest.approx(45.0)
+    )
+
+
 @pytest.mark.parametrize(
     ("text", "count"),
     [("x + y + z", 2), ("x*y*z", 2), ("-x", 0), ("-x*y", 1), ("x**3", 2), ("1/x", 1),

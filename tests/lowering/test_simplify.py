@@ -44,8 +44,10 @@ def test_a_value_used_once_is_put_in_its_place() -> None:
         [_statement(a, x * y), _statement(c, a + z), _statement(d, a - z), _statement(e, c * d)],
         [_statement(a, x * y, total_of="rr"), _statement(c, a + z)],
         [_statement(a, x + y), _statement(c, a * z + a * x)],
+        [_statement(a, x + y), _statement(c, z * a**2)],
+        [_statement(a, x * y + z), _statement(c, a**3)],
     ],
-    ids=["named", "used twice", "a sum over legs", "twice in one statement"],
+    ids=["named", "used twice", "a sum over legs", "twice in one statement", "squared", "cubed"],
 )
 def test_other_values_keep_their_statement(statements: list[Statement]) -> None:
     after = inline_single_use(statements, _stores(statements[-1].target), [])

@@ -19,7 +19,7 @@ from pathlib import Path
 from tests.mutants.faults import ROOT, Fault, FaultError
 
 COPIED = ("pne_sym", "templates", "tests", "docs", "README.md", "pyproject.toml", "LICENSE")
-_LEFT_OUT = shutil.ignore_patterns("gallery", "node_modules", "__pycache__")
+_LEFT_OUT = shutil.ignore_patterns("gallery", "node_modules")
 _MEMORY = 8 * 2**30
 _FAILED = re.compile(r"^(?:FAILED|ERROR) (\S+(?:\[.*?\])?)(?: - (.*))?$", re.MULTILINE)
 _BROKEN = ("NameError", "ImportError", "SyntaxError", "UnboundLocalError", "ModuleNotFoundError")
@@ -71,7 +71,10 @@ class Run:
 
 
 def copy_sources(folder: Path) -> Path:
-    """A copy of what tests need, without what is generated; returns its top."""
+    """A copy of what tests need, without what is generated; returns its top.
+
+    Times of files are kept, so that what Python has compiled of them is still theirs.
+    """
     top = folder / "copy"
     top.mkdir()
     for name in COPIED:

@@ -154,6 +154,15 @@ def test_impossible_values(name: str, parameter: str, value: Any, message: str) 
             make(**{parameter: value})
 
 
+def test_what_is_zero_by_structure_is_made_so() -> None:
+    """Rounding there is accepted, and has no effect."""
+    model = module(catalogue("planar_3rpr"))
+    p = model.Parameters()
+    rounded = p.replace(gravity=p.gravity + 1e-10)
+    np.testing.assert_array_equal(rounded.gravity - p.gravity > 0.0, [True, True, False])
+    assert rounded.gravity[2] == 0.0
+
+
 def test_tensors_are_judged_by_themselves() -> None:
     """A large inertia of one leg excuses no other."""
     model = module(catalogue("stewart"))
