@@ -12,14 +12,23 @@ from typing import Any
 
 import numpy as np
 
-from pne_sym.derivation import Derivation, Equation, Frame, Given, Output, names_in
+from pne_sym.derivation import Derivation, Equation, names_in
 from pne_sym.review.alignment import Alignment
+from pne_sym.review.arrays import assembled, by_array
 from pne_sym.review.difference import EquationDifference, Gap, Verdict
+from pne_sym.review.equation_text import (
+    components,
+    conditions,
+    formula,
+    frame_text,
+    given_text,
+    leg_sums,
+    text_of,
+)
 from pne_sym.review.evaluation import State, Structure
 from pne_sym.review.measure import gap_between
 from pne_sym.review.naming import Names
 from pne_sym.review.plain import plain
-from pne_sym.vector import LegSum, TensorLegSum, VectorLegSum
 
 
 @dataclass(frozen=True)
@@ -61,7 +70,7 @@ class DerivationComparer:
             State(self.b, s.after, s.vectors[1], self._lender(old))
             for s, old in zip(samples, self.before, strict=True)
         ]
-        self.moved: set[str] = set()
+        self.moved = set(self._turned_branches())
 
     def compare(self) -> tuple[EquationDifference, ...]:
         """All equations: given quantities first, then in order of the derivation after."""
@@ -71,10 +80,20 @@ class DerivationComparer:
         gone = set(self.a.equations) - set(self.matched.values())
         for equation in self.a.derivation.equations():
             if equation.name in gone:
-                found.append(self._told(equation, Verdict.REMOVED, before=_formula(equation)))
+                found.append(self._told(equation, Verdict.REMOVED, before=formula(equation)))
         return (*found, *self._bases(), *(self._outputs() if self.before else ()))
 
     # ---- who is who -------------------------------------------------------------------
+
+    def _turned_branches(self) -> Iterator[str]:
+        """Signs of assembly branches that are others, or new."""
+        tables = [s.derivation.parameters.branches for s in (self.a, self.b)]
+        for name, (leg_type, signs) in tables[1].items():
+            of, old = tables[0].get(self.names.partner.get(name, ""), ("", ()))
+            before = dict(zip(self.a.legs.get(of, ()), old, strict=True))
+            for leg, sign in zip(self.b.legs[leg_type], signs, strict=True):
+                if leg in self.names.legs and before.get(self.names.legs[leg]) != sign:
+                    yield name
 
     def _common_legs(self, before: str, after: str) -> tuple[int | None, ...]:
         """Legs after that have the quantity in both versions; (None,) of the platform's."""
@@ -183,9 +202,9 @@ class DerivationComparer:
         partner = self.matched.get(after.name)
         if partner is None:
             self.moved.add(after.name)
-            return self._told(after, Verdict.ADDED, after=_formula(after))
+            return self._told(after, Verdict.ADDED, after=formula(after))
         before = self.a.equations[partner]
-        same = _text(before) == self._renamed_text(before, after)
+        same = text_of(before) == self._renamed_text(before, after)
         gap, notes = (None, []) if same or not self.before else self._worst(before, after)
         if gap is not None:
             verdict = Verdict.DIFFERENT
@@ -202,7 +221,7 @@ class DerivationComparer:
         note = "; ".join((*notes, *self._notes(before, after)))
         if same:
             return self._told(after, verdict, note=note)
-        texts = {"before": _formula(before), "after": _formula(after)}
+        texts = {"before": formula(before), "after": formula(after)}
         return self._told(after, verdict, gap=gap, note=note, **texts)
 
     def _renamed_text(self, before: Equation, after: Equation) -> tuple[str, ...]:
@@ -243,7 +262,7 @@ class DerivationComparer:
             gap = self._gap(before.name, after.name, form)
             if gap is not None:
                 return gap, [f"in the form {plain(form)}"]
-        if _conditions(before) != self._renamed_text(before, after)[1]:
+        if conditions(before) != self._renamed_text(before, after)[1]:
             return self._condition_gap(before, after)
         return None, []
 
@@ -273,7 +292,7 @@ class DerivationComparer:
                 continue
             old = self.a.givens[partner]
             chain = self._chain(given.frame)
-            texts = _given(old), self.names.as_before(_components(given.components))
+            texts = given_text(old), self.names.as_before(components(given.components))
             same_frame = self.names.partner.get(given.frame, given.frame) == old.frame
             same = texts[0] == texts[1] and same_frame
             if same and not chain & turned:
@@ -290,8 +309,8 @@ class DerivationComparer:
                 self.b.derivation.notation[name].meaning,
                 self.b.leg_type.get(name, ""),
                 Verdict.DIFFERENT if gap is not None else Verdict.CHANGED,
-                f"{_components(old.components)} in {old.frame}",
-                f"{_components(given.components)} in {given.frame}",
+                f"{components(old.components)} in {old.frame}",
+                f"{components(given.components)} in {given.frame}",
                 gap,
             )
 
@@ -308,7 +327,7 @@ class DerivationComparer:
         found = set()
         for name, frame in self.b.frames.items():
             old = self.a.frames.get(self.names.partner.get(name, name))
-            if old is None or _frame(old) != self.names.as_before(_frame(frame)):
+            if old is None or frame_text(old) != self.names.as_before(frame_text(frame)):
                 found.add(name)
         return found
 
@@ -333,12 +352,12 @@ class DerivationComparer:
         legs = {k: k for k in self.a.type_of_leg}
         if self.names.legs != legs or legs.keys() != self.b.type_of_leg.keys():
             return  # the places of legs that are new or gone are not those before
-        old, new = (_by_array(s.derivation) for s in (self.a, self.b))
+        old, new = (by_array(s.derivation) for s in (self.a, self.b))
         for array in sorted(old.keys() & new.keys()):
             if str(old[array]) == self.names.as_before(str(new[array])):
                 continue
-            a = [_assembled(s, old[array]) for s in self.before]
-            b = [_assembled(s, new[array]) for s in self.local]
+            a = [assembled(s, old[array]) for s in self.before]
+            b = [assembled(s, new[array]) for s in self.local]
             places = sorted({place for each in (*a, *b) for place in each})
             gap = gap_between(*([[each.get(p, 0.0) for p in places] for each in x] for x in (a, b)))
             different = gap is not None and gap.size > self.tolerance
@@ -353,67 +372,3 @@ class DerivationComparer:
                 Verdict.DIFFERENT if different else Verdict.EQUAL,
                 gap=gap if different else None,
             )
-
-
-def _formula(equation: Equation) -> str:
-    forms = "".join(f" = {plain(form)}" for form in equation.forms)
-    return f"{equation.name} = {plain(equation.rhs)}{forms}"
-
-
-def _conditions(equation: Equation) -> str:
-    return str([(str(c.trouble), c.value, c.scale, c.power) for c in equation.conditions])
-
-
-def _text(equation: Equation) -> tuple[str, ...]:
-    return (_formula(equation), _conditions(equation))
-
-
-def _components(components: Sequence[Any]) -> str:
-    return f"({', '.join(map(str, components))})"
-
-
-def _given(given: Given) -> str:
-    return _components(given.components)
-
-
-def _frame(frame: Frame) -> str:
-    return str((frame.rotation, frame.axes, frame.rows, frame.angle))
-
-
-def leg_sums(expr: Any) -> list[str]:
-    """The leg types that an expression sums over, in order."""
-    if isinstance(expr, LegSum | VectorLegSum | TensorLegSum):
-        return [str(expr.args[1])]
-    found = [t for arg in getattr(expr, "args", ()) for t in leg_sums(arg)]
-    return list(dict.fromkeys(found))
-
-
-def _by_array(derivation: Derivation) -> dict[str, list[Output]]:
-    found: dict[str, list[Output]] = {}
-    for output in derivation.outputs:
-        found.setdefault(output.array, []).append(output)
-    return found
-
-
-def _assembled(state: State, outputs: list[Output]) -> dict[tuple[int, int], float]:
-    """Entries of an array by row and column."""
-    entries: dict[tuple[int, int], float] = {}
-    for o in outputs:
-        legs = state.structure.legs[o.leg_type] if o.leg_type else (None,)
-        for k, leg in enumerate(legs):
-            value = np.asarray(state.of(o.value, leg), dtype=float)
-            r0 = o.leg_rows[k] if o.leg_rows else 0
-            c0 = o.leg_columns[k] if o.leg_columns else 0
-            for i, row in o.rows:
-                for j, column in o.columns or ((0, 0),):
-                    place = (row + r0, column + c0)
-                    entries[place] = _entry(value, i, j, along_row=len(o.columns) > 1)
-                    if o.mirrored:
-                        entries[place[::-1]] = entries[place]
-    return entries
-
-
-def _entry(value: Any, i: int, j: int, *, along_row: bool) -> float:
-    if value.ndim == 0:
-        return float(value)
-    return float(value[i, j] if value.ndim == 2 else value[j if along_row else i])

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Mapping
 
 from pne_sym.review.difference import FileDifference
 from pne_sym.review.folders import Entry, Folder
 
 _LONG = 100
+_FAR = 30
+"""Lines of code above a line in which its equation is looked for."""
+_ID = re.compile(rb"\s+(?:#|/\*|//|%)\s*\(([A-Za-z][A-Za-z0-9_-]{0,60})\)")
 
 
 def differing(before: Folder, after: Folder) -> list[str]:
@@ -56,7 +60,18 @@ def first_difference(before: bytes, after: bytes) -> tuple[str, str, str]:
     lines = [side[k] if k < len(side) else b"" for side in (old, new)]
     start = next((i for i in range(min(map(len, lines))) if lines[0][i] != lines[1][i]), 0)
     start = max(0, start - _LONG // 2) if max(map(len, lines)) > _LONG else 0
-    return f"line {k + 1}", _shown(lines[0], start), _shown(lines[1], start)
+    where = f"line {k + 1}{_equation_above(old if k < len(old) else new, k)}"
+    return where, _shown(lines[0], start), _shown(lines[1], start)
+
+
+def _equation_above(lines: list[bytes], k: int) -> str:
+    """The equation whose statement a line of code is: its id stands in the comment above."""
+    for line in reversed(lines[max(0, k - _FAR) : k + 1]):
+        if (found := _ID.match(line)) is not None:
+            return f", under ({found[1].decode()})"
+        if line and not line[:1].isspace():
+            break
+    return ""
 
 
 def _shown(line: bytes, start: int) -> str:

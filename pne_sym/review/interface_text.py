@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
 from collections.abc import Iterable, Iterator
 
 from pne_sym.review.difference import Change
 
 _SHOWN = 10
+_ORDERS = ("joints", "actuators", "extra", "constraints")
+_SIZE = re.compile(r"'(\w+)': (\d+)")
 _LONG = 100
 _WIDTH = 98
 
@@ -31,6 +34,10 @@ def interface_lines(changes: list[Change]) -> Iterator[str]:
                 others = [c for c in others if c not in group]
                 names = [c.what.removeprefix(what) for c in group]
                 yield from _cut(f"{what.strip()}s {kind}:", names)
+    orders = [c.what for c in others if c.what in _ORDERS]
+    if orders:
+        yield from listed("other orders of entries:", orders)
+    others = [c for c in others if c.what not in _ORDERS]
     for c in others[:_SHOWN]:
         yield from _single(c)
     if len(others) > _SHOWN:
@@ -46,9 +53,18 @@ def _alike(changes: list[Change], words: str) -> Iterator[str]:
 
 
 def _single(c: Change) -> Iterator[str]:
+    if c.what == "sizes":
+        yield f"  changed: sizes {_sizes(c)}"
+        return
     yield f"  {c.kind}: {c.what}"
     yield from (f"-   {_short(c.before)}" for _ in range(bool(c.before)))
     yield from (f"+   {_short(c.after)}" for _ in range(bool(c.after)))
+
+
+def _sizes(c: Change) -> str:
+    """Those that are others: NU 3 -> 4."""
+    old, new = (dict(_SIZE.findall(text)) for text in (c.before, c.after))
+    return ", ".join(f"{n} {v} -> {new.get(n)}" for n, v in old.items() if new.get(n) != v)
 
 
 def _short(text: str) -> str:

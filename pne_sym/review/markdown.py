@@ -62,15 +62,11 @@ def part_of(name: str, found: Comparison) -> Part:
 
 def comment(parts: Sequence[Part]) -> Iterator[str]:
     """Markdown of several models: the equal ones in one line together, then the others."""
-    parts = _within(list(parts), LIMIT - _RESERVE)
+    count, of = sum(not p.is_equal for p in parts), len(parts)
+    parts = _within([*parts], LIMIT - _RESERVE)
     equal = [p.name for p in parts if p.is_equal]
     others = [p for p in parts if not p.is_equal]
-    count = len(others)
-    yield (
-        f"### {'⚠️' if others else '✅'} {count} of {len(parts)} models differ"
-        if others
-        else (f"### ✅ all {len(parts)} models are equal")
-    )
+    yield (f"### ⚠️ {count} of {of} models differ" if count else f"### ✅ all {of} models are equal")
     if equal:
         yield ""
         yield f"Equal: {', '.join(map(code, equal))}."
@@ -79,6 +75,9 @@ def comment(parts: Sequence[Part]) -> Iterator[str]:
         yield f"#### {escaped(part.name)}: {escaped(part.headline)}"
         if part.level < _LEVELS:
             yield from _body(part)
+    if len(parts) < of:
+        yield ""
+        yield f"And {of - len(parts)} further models, left out: the comment would be too long."
     yield from _left_out(others)
 
 
@@ -109,22 +108,23 @@ def _size(part: Part) -> int:
 
 
 def _within(parts: list[Part], limit: int) -> list[Part]:
-    """Less and less of the longest, until all fit; in the end only the first fit."""
+    """Less and less of the longest, until all fit; in the end the last ones are only counted."""
+    parts = list(parts)
     sizes = [_size(p) for p in parts]
-    while sum(sizes) > limit and any(p.level < _LEVELS and not p.is_equal for p in parts):
-        k = max(
-            (k for k, p in enumerate(parts) if p.level < _LEVELS and not p.is_equal),
-            key=lambda k: sizes[k],
-        )
-        parts[k] = replace(parts[k], level=parts[k].level + 1)
-        sizes[k] = _size(parts[k])
-    total = 0
-    kept = []
-    for part, size in zip(parts, sizes, strict=True):
-        total += size
-        short = replace(part, headline=f"{part.headline[:120]}...") if total > limit else part
-        kept.append(short)
-    return kept
+    total = sum(sizes)
+    for level in range(1, _LEVELS + 1):
+        longest = sorted(range(len(parts)), key=lambda k: -sizes[k])
+        for k in longest:
+            if total <= limit:
+                return parts
+            if not parts[k].is_equal:
+                parts[k] = replace(parts[k], level=level)
+                total += (size := _size(parts[k])) - sizes[k]
+                sizes[k] = size
+    while parts and total > limit:
+        parts.pop()
+        total -= sizes.pop()
+    return parts
 
 
 def _left_out(parts: Sequence[Part]) -> Iterator[str]:
@@ -166,8 +166,9 @@ def code(text: str) -> str:
     return f"`{text[:_LONG]}{'...' if len(text) > _LONG else ''}`"
 
 
+_ESCAPES = {ord(c): f"\\{c}" for c in "\\`*_[]"} | {ord(c): f"&#{ord(c)};" for c in "<>|#@&"}
+
+
 def escaped(text: str) -> str:
     """A text that Markdown shows as it is."""
-    for mark in "\\`*_[]<>|#@":
-        text = text.replace(mark, f"&#{ord(mark)};" if mark in "<>|#@" else f"\\{mark}")
-    return text
+    return text.translate(_ESCAPES)

@@ -111,8 +111,10 @@ def test_markdown_of_another_mechanism() -> None:
     assert done.returncode == 1
     assert done.stdout.startswith("### ")
     assert "### ⚠️ different: leg 7 " in done.stdout
-    assert "<details><summary>Structure</summary>" in done.stdout
-    assert "&#64;" not in done.stdout
+    assert "<details open><summary>Specification</summary>" in done.stdout
+    assert "2 of platform" in done.stdout
+    assert "a sum over 7 legs, was over 6" in done.stdout
+    assert "-&#62;" in done.stdout
 
 
 @pytest.mark.parametrize(

@@ -207,3 +207,25 @@ def test_a_line_that_acts_on_the_terminal_or_the_reader_is_escaped(tmp_path: Pat
     assert "\\x1b[2J\\u202e" in done.output
     assert "\x1b" not in done.output
     assert max(map(len, done.output.split("\n"))) < 500
+
+
+def test_c_can_be_left_out_which_is_said(tmp_path: Path) -> None:
+    before, after = pair(tmp_path, MODEL)
+    file, change = NAMED["gravity in C"]
+    edit(after / file, change)
+    done = diff(before, after, "--run", "--no-c")
+    assert done.exit_code == 1
+    assert re.search(r"^  C +not compared; left out by --no-c$", done.output, re.MULTILINE)
+    assert "C: Z" not in done.output
+
+
+def test_a_statement_of_the_code_is_placed_at_its_equation(tmp_path: Path) -> None:
+    """A planted fault of the lowering in a folder, of which nothing is run."""
+    before, after = pair(tmp_path, MODEL)
+    ids = re.findall(r"^ +# \((rpr-N\d+)\)", texts(MODEL)["planar_3rpr.py"], re.MULTILINE)
+    wanted = ids[len(ids) // 2]
+    edit(after / "planar_3rpr.py", substituted(rf"(# \({wanted}\).*\n.* = )", r"\1-"))
+    done = diff(before, after)
+    assert done.exit_code == 1
+    assert re.search(rf"planar_3rpr\.py: differs, line \d+, under \({wanted}\)", done.output)
+    assert re.search(rf"first at planar_3rpr\.py line \d+, under \({wanted}\)", done.output)

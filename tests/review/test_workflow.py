@@ -63,7 +63,7 @@ class Runner:
             file.chmod(file.stat().st_mode | stat.S_IXUSR)
         path = [str(programs), str(PROGRAM.parent), os.environ["PATH"]]
         self.variables = {
-            "PATH": os.pathsep.join(path), "BASE": "main", "NUMBER": "7", "SPECS": "robots",
+            "PATH": os.pathsep.join(path), "BASE": "main~0", "NUMBER": "7", "SPECS": "robots",
             "MODELS": "generated", "REPO": "me/robots", "HEAD": "abc123",
             "GITHUB_STEP_SUMMARY": str(place / "summary"), "GH_LOG": str(place / "gh.log"),
             "GH_STATE": str(place), "PIP_LOG": str(place / "pip.log"),

@@ -1,0 +1,49 @@
+"""Equations, given quantities and frames as texts that can be compared."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from pne_sym.derivation import Equation, Frame, Given
+from pne_sym.review.plain import plain
+from pne_sym.vector import LegSum, TensorLegSum, VectorLegSum
+
+
+def formula(equation: Equation) -> str:
+    """name = right-hand side = other forms."""
+    forms = "".join(f" = {plain(form)}" for form in equation.forms)
+    return f"{equation.name} = {plain(equation.rhs)}{forms}"
+
+
+def conditions(equation: Equation) -> str:
+    """What must hold, as one text."""
+    return str([(str(c.trouble), c.value, c.scale, c.power) for c in equation.conditions])
+
+
+def text_of(equation: Equation) -> tuple[str, ...]:
+    """All that an equation says."""
+    return (formula(equation), conditions(equation))
+
+
+def components(entries: Sequence[Any]) -> str:
+    """(x, y, z)."""
+    return f"({', '.join(map(str, entries))})"
+
+
+def given_text(given: Given) -> str:
+    """Components of what is given."""
+    return components(given.components)
+
+
+def frame_text(frame: Frame) -> str:
+    """How a frame stands in its parent."""
+    return str((frame.rotation, frame.axes, frame.rows, frame.angle))
+
+
+def leg_sums(expr: Any) -> list[str]:
+    """The leg types that an expression sums over, in order."""
+    if isinstance(expr, LegSum | VectorLegSum | TensorLegSum):
+        return [str(expr.args[1])]
+    found = [t for arg in getattr(expr, "args", ()) for t in leg_sums(arg)]
+    return list(dict.fromkeys(found))
