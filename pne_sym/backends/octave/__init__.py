@@ -50,7 +50,8 @@ class OctaveBackend:
             raise TargetError(f"{bundle.name}: the target octave: the name is a word of MATLAB")
         code, public, program = Code(bundle), Public(bundle), bundle.program
         exported = [public.exported(f) for f in program.public if f.is_exported]
-        users = _files(bundle, [*exported, code.parameters(), _home(bundle)])
+        own_words = (code.parameters(), _home(bundle), _actuators(bundle))
+        users = _files(bundle, [*exported, *own_words])
         own = [code.prepare(), *map(code.function, program.functions.values())]
         own += [*map(public.steps, program.public), _templates(bundle, public)]
         reached = _reached(bundle, users.values(), _files(bundle, own))
@@ -135,6 +136,17 @@ def _home(bundle: Bundle) -> str:
     return define("[X, q] = home_pose()", summary, (f"X = {X};", f"q = {q};"))
 
 
+def _actuators(bundle: Bundle) -> str:
+    """The function that tells which joints are actuated."""
+    c = bundle.coordinates
+    places = column([c.joints.index(joint) + 1 for joint in c.actuators])
+    names = "; ".join(f"'{name}'" for name in c.actuator_names)
+    summary = "ACTUATORS  Places of the actuated joints in q, and their names, in the order of tau."
+    return define(
+        "[places, names] = actuators()", summary, (f"places = {places};", f"names = {{{names}}};")
+    )
+
+
 def _contents(bundle: Bundle) -> str:
     """What `help NAME` shows."""
     d = describe(bundle)
@@ -142,6 +154,7 @@ def _contents(bundle: Bundle) -> str:
     rows = {f.name: f.meaning for f in bundle.program.public if f.is_exported}
     rows |= {
         "parameters": "The parameters p of the specification.",
+        "actuators": "Places of the actuated joints in q, and their names.",
         "home_pose": "The pose X and the displacements q at home.",
     }
     lines = [

@@ -30,6 +30,8 @@ _EXPRESSIONS = {
     "same": "{0}",
     "negative": "-{0}",
     "multiply": "{0} .* {1}",
+    "dot": "sum({0} .* {1}, 1)",
+    "scale": "{0} .* {1}",
     "entry": "{0}({numbers}, :)",
     "impossible": "NaN({shape})",
     "extend": "[{0}; zeros({rest}, n)]",
@@ -138,7 +140,7 @@ class Public(MatlabText):
         start = len(function.required)
         lines = list(self._help(function, results, names))
         lines += [f"if nargin < {k + 1}, {n} = []; end" for k, n in enumerate(names) if k >= start]
-        sizes = [f"size({a.name}, {len(a.value.shape) + 1})" for a in function.required]
+        sizes = [f"size({a.name}, {len(_core(a)) + 1})" for a in function.required]
         sizes += [f"size({a.name}, 2) + isempty({a.name})" for a in function.optional]
         lines.append(f"n = {self.internal}states([{', '.join(sizes)}]);")
         if function.needs_model:
@@ -150,7 +152,7 @@ class Public(MatlabText):
 
     def _argument(self, a: Argument) -> str:
         if a.default is None:
-            shape = f"[{', '.join(map(str, a.value.shape))}]"
+            shape = f"[{', '.join(map(str, _core(a)))}]"
             return f"{self.internal}argument('{a.name}', {a.name}, {shape}, n)"
         size, positive = a.value.size, str(a.positive).lower()
         default = {
@@ -201,3 +203,8 @@ def _result(a: Argument, function: PublicFunction) -> str:
 
 def _shape(a: Argument) -> str:
     return " x ".join((*map(str, a.value.shape or (1,)), "n"))
+
+
+def _core(argument: Argument) -> tuple[int, ...]:
+    """The shape of one state: a number is a column with one entry."""
+    return argument.value.shape or (1,)

@@ -37,6 +37,7 @@ class XpBackend:
             ),
             closures=[_closure(bundle, closure) for closure in program.closures],
             given=program.given,
+            actuated=tuple(map(c.joints.index, c.actuators)),
             quaternion=sum(name in "xyz" for name in c.pose) if c.has_quaternion else None,
         )
         return {f"{bundle.name}_xp.py": text}

@@ -7,7 +7,7 @@ import textwrap
 
 from pne_sym.program.ir import Program
 from pne_sym.program.operations import OPERATIONS
-from pne_sym.program.public import Apply, Argument, Default, PublicFunction, Run, Step
+from pne_sym.program.public import Apply, Argument, Default, PublicFunction, Run, Step, renamed
 
 _EXPRESSIONS = {
     "add": "{0} + {1}",
@@ -24,6 +24,8 @@ _EXPRESSIONS = {
     "split": "{0}[:{n}, ...], {0}[{n}:, ...]",
     "join": "s.xp.concat(({0}, {1}))",
     "beside": "s.xp.concat(({0}, {1}), axis=1)",
+    "dot": "s.xp.sum({0} * {1}, axis=0)",
+    "scale": "{0} * {1}[None, ...]",
     "scale_columns": "{0} * {1}[None, ...]",
     "half_form": "0.5 * s.xp.sum({0} * s.times({1}, {0}), axis=0)",
 }
@@ -37,6 +39,7 @@ def expressions() -> frozenset[str]:
 
 def steps_text(program: Program, function: PublicFunction) -> str:
     """The steps as a function of the state and all inputs, which returns a tuple."""
+    function = renamed(function, {"s": "s_given"})  # s is the state
     lines = [_step(program, step) for step in function.steps]
     runs = [
         isinstance(s, Run) and "q" in program.functions[s.function].inputs for s in function.steps
