@@ -45,6 +45,8 @@ _FUNCTIONS = {  # of the program, by what is public of them
     "required": "inverse_dynamics",
     "legs": "leg_reactions",
     "potential": "energy",
+    "dissipation": "dissipation",
+    "motors": "motor_rates",
 }
 
 

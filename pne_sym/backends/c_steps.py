@@ -21,6 +21,7 @@ _ENTRIES = {
     "subtract": "{a}[i] - {b}[i]",
     "negative": "-{a}[i]",
     "multiply": "{a}[i]*{b}[i]",
+    "scale": "{a}[i]*{b}[i%({w})]",
     "inverse_root": "1/root({a}[i])",
     "scale_columns": "{a}[i]*{b}[i%({row})]",
     "choose_length": "{b}[i] > 0 ? {b}[i] : {a}[i] > TINY*{a}[{w} + i] ? {a}[i] : {a}[{w} + i]",
@@ -42,6 +43,7 @@ _LANES = {
     "product": "product({m}, {n}, {p}, {w}, {a}, {b}, {x});",
     "transposed": "transpose({m}, {n}, {w}, {a}, {x});",
     "half_form": "half_form({m}, {w}, {a}, {b}, {x});",
+    "dot": "inner({m}, {w}, {a}, {b}, {x});",
     "beside": "beside({m}, {row}, {row_b}, {a}, {b}, {x});",
     "join": "beside(1, {all_a}, {all_b}, {a}, {b}, {x});",
     "saddle": "saddle({m}, {p}, {stride}, {w}, {a}, {b}, {x});",
@@ -61,6 +63,7 @@ _SINGLE = {
     "quaternion_of_rpy": "quaternion_of_rpy({a}, {x});",
     "quaternion_rate": "quaternion_rate({a}, {b}, {x});",
     "turn_quaternion": "turn_quaternion({a}, {b}, {x});",
+    "turn_between": "turn_between({a}, {b}, {x});",
 }
 """Calls for one state."""
 _BIG = ("least_norm", "resolve", "null_basis", "singular_values")

@@ -70,6 +70,11 @@ class Described:
     is_numeric: bool
 
     @property
+    def actuated(self) -> tuple[int, ...]:
+        """Places of the actuated joints in q, in the order of tau."""
+        return tuple(map(self.coordinates.joints.index, self.coordinates.actuators))
+
+    @property
     def has_quaternion(self) -> bool:
         """Whether orientation is a quaternion."""
         return self.coordinates.has_quaternion

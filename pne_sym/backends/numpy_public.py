@@ -22,6 +22,8 @@ _EXPRESSIONS = {
     "product": 'np.einsum("iks,kjs->ijs", {0}, {1})',
     "transposed": "np.swapaxes({0}, 0, 1)",
     "half_form": '0.5 * np.einsum("is,is->s", {0}, np.einsum("ijs,js->is", {1}, {0}))',
+    "dot": "np.sum({0} * {1}, axis=0)",
+    "scale": "{0} * {1}",
     "scale_columns": "{0} * {1}",
     "inverse_root": "1.0 / np.sqrt({0})",
     "extend": "_extended({0}, {n})",
@@ -49,6 +51,7 @@ _EXPRESSIONS = {
     "quaternion_of_rpy": "_quaternion_of_rpy({0})",
     "quaternion_rate": "_quaternion_rate({0}, {1})",
     "turn_quaternion": "_turned({0}, {1})",
+    "turn_between": "_turn_between({0}, {1})",
 }
 """Every operation as an expression; functions stand in templates/numpy."""
 OPERATIONS = frozenset((*_EXPRESSIONS, "search"))

@@ -14,11 +14,13 @@ from pne_sym.program.ir import Program
 from pne_sym.program.operations import ORTHONORMAL
 from pne_sym.program.public import Argument, Default, PublicFunction
 
+_CONSTANTS = ("ACTUATED", "ACTUATOR_NAMES", "HOME_Q", "HOME_X")
+
 
 def exported(bundle: Bundle) -> tuple[str, ...]:
     """Sizes, then the rest by name."""
     names = [f.name for f in bundle.program.public if f.is_exported]
-    return (*bundle.coordinates.sizes, *sorted(("HOME_Q", "HOME_X", "Parameters", *names)))
+    return (*bundle.coordinates.sizes, *sorted((*_CONSTANTS, "Parameters", *names)))
 
 
 def default_lines(f: FieldView) -> list[str]:

@@ -357,6 +357,11 @@ class Coordinates:
         return len(self.pose) == self.position + 4
 
     @property
+    def actuator_names(self) -> tuple[str, ...]:
+        """Of the entries of tau: leg and joint, counted from 1."""
+        return tuple(f"leg{leg + 1}_joint{joint + 1}" for leg, joint in self.actuators)
+
+    @property
     def sizes(self) -> dict[str, int]:
         """NQ, NV, NU, NC, NW, NJ: sizes of X, V, tau, lambda, wrench, q."""
         extra = len(self.extras)

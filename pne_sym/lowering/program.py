@@ -51,6 +51,7 @@ GROUPS: tuple[tuple[tuple[str, tuple[str, ...]], ...], ...] = (
     ),
     (("potential", ("potential",)),),
     (("dissipation", ("dissipation",)),),
+    (("motors", ("motor_rates", "per_turn")),),
     (("condition", ("lengths",)),),
 )
 
@@ -405,6 +406,7 @@ def _shapes(derivation: Derivation) -> dict[str, tuple[int, ...]]:
         "constraint_direction": (n["NC"], wide),
         "potential": (1,),
         **({"dissipation": (1,)} if _is_made(derivation, "dissipation") else {}),
+        **{name: (n["NU"],) for name in ("motor_rates", "per_turn") if _is_made(derivation, name)},
         "constraints": (n["NC"],),
         "constraint_bias": (n["NC"],),
         "lengths": (2,),

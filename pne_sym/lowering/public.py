@@ -6,6 +6,7 @@ Reference: inverse dynamics Eq. 3, equations of motion Eqs. 5 to 7, constraints 
 from __future__ import annotations
 
 from pne_sym.derivation import Coordinates, Derivation
+from pne_sym.lowering.public_actuators import actuator_functions
 from pne_sym.lowering.public_condition import (
     CONDITION,
     CONDITION_CONSTRAINED,
@@ -13,7 +14,7 @@ from pne_sym.lowering.public_condition import (
     scaled_values,
 )
 from pne_sym.lowering.public_notes import with_notes
-from pne_sym.lowering.public_pose import pose_functions
+from pne_sym.lowering.public_pose import displacement_functions, pose_functions
 from pne_sym.program.algorithm import Algorithm
 from pne_sym.program.ir import Program
 from pne_sym.program.public import (
@@ -60,14 +61,16 @@ def public_functions(derivation: Derivation, program: Program) -> tuple[PublicFu
     coordinates = derivation.coordinates
     assert coordinates is not None
     guessed = any(not t.is_closed for t in derivation.leg_types)
-    writer = _Writer(coordinates, program, guessed=guessed)
+    writer = Writer(coordinates, program, guessed=guessed)
     rows = moment_rows(derivation, coordinates)
     found = (
         *writer.of_program(),
         *writer.of_dynamics(),
         *writer.of_condition(rows),
         *writer.of_kinematics(),
+        *actuator_functions(writer),
         *pose_functions(coordinates),
+        *displacement_functions(coordinates),
     )
     arrays = {f.name: f.arrays for f in program.functions.values()}
     found = tuple(with_readable_names(f, arrays) for f in found)
@@ -76,7 +79,7 @@ def public_functions(derivation: Derivation, program: Program) -> tuple[PublicFu
     return tuple(with_notes(function, coordinates, guessed=guessed) for function in found)
 
 
-class _Writer:
+class Writer:
     """Writes the public functions of a model."""
 
     def __init__(self, coordinates: Coordinates, program: Program, *, guessed: bool) -> None:

@@ -1,4 +1,4 @@
-"""Public functions about poses: rotation matrices, roll, pitch and yaw, rates of X."""
+"""Public functions about poses: rotation matrices, roll, pitch and yaw, rates of X, differences."""
 
 from __future__ import annotations
 
@@ -107,3 +107,90 @@ def _helper(
 ) -> PublicFunction:
     steps = tuple(a.steps)
     return PublicFunction(name, meaning, inputs, (output,), steps, "pose", needs_model=False)
+
+
+# ---- differences of poses ----------------------------------------------------------------------
+
+
+def displacement_functions(c: Coordinates) -> list[PublicFunction]:
+    """Poses moved by small or large displacements, and the displacements between them."""
+    at, n = _Layout.of(c), c.sizes
+    return [_retract(at, n), _difference(at, n), _interpolate(at, n)]
+
+
+def _pose_argument(name: str, n: dict[str, int], meaning: str = "pose") -> Argument:
+    return Argument(Value(name, (n["NQ"],)), ("NQ",), f"{meaning}, and extra coordinates")
+
+
+def _retract(at: _Layout, n: dict[str, int]) -> PublicFunction:
+    a, X = Algorithm(), _pose_argument("X", n)
+    step = Argument(
+        Value("step", (n["NV"],)),
+        ("NV",),
+        "displacement: of the origin, rotation vector in base axes, of extra coordinates",
+    )
+    moved = _moved(a, at, X.value, step.value)
+    out = Argument(moved, ("NQ",), "the pose moved", label="X_moved")
+    meaning = "X moved by a displacement: (t + d, exp([phi]) R, y + dy) of step = (d, phi, dy)."
+    return _helper("retract", meaning, (X, step), a, out)
+
+
+def _moved(a: Algorithm, at: _Layout, X: Value, step: Value) -> Value:
+    if at.orientation != 4:
+        return a.apply("add", X, step)
+    t, q, y = _parts(a, X, at.position, 4)
+    d, phi, dy = _parts(a, step, at.position, 3)
+    turned = a.apply("turn_quaternion", q, phi)
+    return _joined(a, (_together(a, "add", t, d), turned, _together(a, "add", y, dy)))
+
+
+def _difference(at: _Layout, n: dict[str, int]) -> PublicFunction:
+    a, X0, X1 = Algorithm(), _pose_argument("X0", n, "from"), _pose_argument("X1", n, "to")
+    out = Argument(
+        _between(a, at, X0.value, X1.value),
+        ("NV",),
+        "of the origin, rotation vector in base axes, of extra coordinates",
+        label="step",
+    )
+    meaning = "The displacement from X0 to X1, the inverse of `retract`; rotations the shorter way."
+    return _helper("difference", meaning, (X0, X1), a, out)
+
+
+def _between(a: Algorithm, at: _Layout, X0: Value, X1: Value) -> Value:
+    if at.orientation != 4:
+        gap = a.apply("subtract", X1, X0)
+        return a.apply("wrap_turns", gap, numbers=[at.position]) if at.orientation else gap
+    (t0, q0, y0), (t1, q1, y1) = (_parts(a, X, at.position, 4) for X in (X0, X1))
+    turn = a.apply("turn_between", q0, q1)
+    return _joined(a, (_together(a, "subtract", t1, t0), turn, _together(a, "subtract", y1, y0)))
+
+
+def _interpolate(at: _Layout, n: dict[str, int]) -> PublicFunction:
+    a, X0, X1 = Algorithm(), _pose_argument("X0", n, "from"), _pose_argument("X1", n, "to")
+    s = Argument(Value("s", ()), (), "part of the way, 0 at X0, 1 at X1")
+    step = a.apply("scale", _between(a, at, X0.value, X1.value), s.value)
+    out = Argument(_moved(a, at, X0.value, step), ("NQ",), "pose", label="X")
+    meaning = "X0 moved by s times the displacement to X1: straight on, turning about one axis."
+    return _helper("interpolate", meaning, (X0, X1, s), a, out)
+
+
+def _parts(
+    a: Algorithm, vector: Value, position: int, orientation: int
+) -> tuple[Value | None, Value, Value | None]:
+    """Position, orientation and extra coordinates; None where there are none."""
+    ends = position, position + orientation, vector.size
+    first = a.apply("take", vector, numbers=range(ends[0])) if position else None
+    turn = a.apply("take", vector, numbers=range(*ends[:2]))
+    rest = a.apply("take", vector, numbers=range(*ends[1:])) if ends[2] > ends[1] else None
+    return first, turn, rest
+
+
+def _together(a: Algorithm, operation: str, one: Value | None, other: Value | None) -> Value | None:
+    return a.apply(operation, one, other) if one and other else None
+
+
+def _joined(a: Algorithm, parts: tuple[Value | None, ...]) -> Value:
+    first, *others = (part for part in parts if part)
+    for part in others:
+        first = a.apply("join", first, part)
+    return first

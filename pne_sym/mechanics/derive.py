@@ -66,6 +66,7 @@ def derive(manipulator: Manipulator) -> Derivation:
     writer.blocks()
     _potential(book, platform, writer, [leg for leg, _ in legs], [k for _, k in legs])
     _dissipation(book, [leg for leg, _ in legs])
+    _motors(book, manipulator, [leg for leg, _ in legs])
     write_lengths(book, [leg.g for leg, _ in legs])
     book.coordinates = _coordinates(manipulator, space, [leg for leg, _ in legs])
     equal = (pair for leg, _ in legs for pair in leg.g.same_axes())
@@ -303,6 +304,29 @@ def _closure_outputs(book: Book, leg: Leg, frame: str, space: TaskSpace) -> None
         for k, j in enumerate(joints):
             if g.turns(j):
                 put(f"jacobian_{name}", Dot(g.spin(j), n), ((0, i * width + k),))
+
+
+def _motors(book: Book, manipulator: Manipulator, legs: list[Leg]) -> None:
+    """Rates of the motors, and what turns forces of joints into torques, where there are motors.
+
+    An actuated joint without data of its motor is driven directly.
+    """
+    if not any(leg.dynamics.forces.motor for leg in legs):
+        return
+    order = [
+        (i, j)
+        for i, leg in enumerate(manipulator.legs)
+        for j, joint in enumerate(leg.joints, 1)
+        if joint.actuated
+    ]
+    for leg in legs:
+        indices, motor = leg.g.leg_type.indices, leg.dynamics.forces.motor
+        for j, joint in enumerate(leg.g.leg_type.model.joints, 1):
+            if joint.actuated:
+                rows = tuple(order.index((i, j)) for i in indices)
+                both = motor.get(j, (leg.motion.qd[j], sp.S.One))
+                for array, value in zip(("motor_rates", "per_turn"), both, strict=True):
+                    book.outputs.append(Output(array, value, ((0, 0),), (), leg.name, rows))
 
 
 def _dissipation(book: Book, legs: list[Leg]) -> None:

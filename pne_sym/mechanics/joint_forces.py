@@ -26,6 +26,7 @@ class JointForces:
         spring: force against the displacement.
         stored: energy of the spring.
         rotor: inertia of the motor along the joint.
+        motor: rate of the motor, and the displacement of the joint per angle of it.
         qd, qdd: rates and accelerations, of all joints.
     """
 
@@ -35,6 +36,7 @@ class JointForces:
     spring: dict[int, Any] = field(default_factory=dict)
     stored: dict[int, Any] = field(default_factory=dict)
     rotor: dict[int, Any] = field(default_factory=dict)
+    motor: dict[int, tuple[Any, Any]] = field(default_factory=dict)
 
     def along(self, j: int) -> Any:
         """What Gamma_j holds beside inertia and weight of the links."""
@@ -75,7 +77,8 @@ def write_joint_forces(
         if spring:
             forces.spring[j], forces.stored[j] = writer.spring(j, q[j])
         if actuator:
-            forces.rotor[j] = writer.rotor(j)
+            forces.rotor[j], *motor = writer.rotor(j, motion.qd[j])
+            forces.motor[j] = motor[0], motor[1]
     return forces
 
 
@@ -159,11 +162,11 @@ class _Writer:
         )
         return force, stored
 
-    def rotor(self, j: int) -> Any:
-        """Inertia of the motor of joint j, along it."""
+    def rotor(self, j: int, rate: Any) -> tuple[Any, Any, Any]:
+        """Inertia of the motor of joint j along it, its rate, and the inverse of its ratio."""
         inertia = self._parameter(j, "actuator", "rotor_inertia")
         ratio = self._parameter(j, "actuator", "gear_ratio")
-        return self.book.define(
+        felt = self.book.define(
             self.g.name(f"rotor_{j}"),
             ratio**2 * inertia,
             rf"J^r_{{{j}}}",
@@ -173,6 +176,25 @@ class _Writer:
             parameter=True,
             reference="beyond the paper",
         )
+        turning = self.book.define(
+            self.g.name(f"motor_{j}"),
+            ratio * rate,
+            rf"\dot\theta_{{{j}}}",
+            f"rate of the motor of joint {j}",
+            Law.ROTOR,
+            unit="rad/s",
+            reference="beyond the paper",
+        )
+        inverse = self.book.define(
+            self.g.name(f"per_turn_{j}"),
+            1 / ratio,
+            f"n^{{-1}}_{{{j}}}",
+            f"displacement of joint {j} per angle of its motor",
+            Law.LUMPING,
+            unit=f"{self.g.kind(j).unit}/rad",
+            parameter=True,
+        )
+        return felt, turning, inverse
 
 
 def _value(joint: Any, table: str, name: str) -> float:

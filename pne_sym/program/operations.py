@@ -129,6 +129,18 @@ def half_form(a: Array, b: Array) -> tuple[Array, ...]:
 
 
 @_operation()
+def dot(a: Array, b: Array) -> tuple[Array, ...]:
+    """The sum of the products of entries of a and b."""
+    return (np.sum(a * b, axis=1),)
+
+
+@_operation()
+def scale(a: Array, b: Array) -> tuple[Array, ...]:
+    """The vector a times the number b."""
+    return (a * b[:, None],)
+
+
+@_operation()
 def scale_columns(a: Array, b: Array) -> tuple[Array, ...]:
     """Columns of a times the entries of b."""
     return (a * b[:, None, :],)
@@ -427,3 +439,17 @@ def turn_quaternion(a: Array, b: Array) -> tuple[Array, ...]:
         vector = c * q[:, :3] + q[:, 3:] * v + np.cross(v, q[:, :3])
         scalar = c * q[:, 3:] - np.sum(v * q[:, :3], axis=1, keepdims=True)
     return (np.concatenate((vector, scalar), axis=1),)
+
+
+@_operation()
+def turn_between(a: Array, b: Array) -> tuple[Array, ...]:
+    """The shortest rotation vector that turns the quaternion a to b; of half turns one of two."""
+    with np.errstate(all="ignore"):
+        p, q = _unit(a), _unit(b)
+        vector = p[:, 3:] * q[:, :3] - q[:, 3:] * p[:, :3] - np.cross(q[:, :3], p[:, :3])
+        scalar = np.sum(p * q, axis=1, keepdims=True)
+        size = np.linalg.norm(vector, axis=1, keepdims=True)
+        half = np.arctan2(size, np.abs(scalar))
+        # Half an angle over its sine: 1 where that is 0.
+        factor = 2.0 * np.where(size > 0.0, half / np.where(size > 0.0, size, 1.0), 1.0)
+    return (vector * np.where(scalar < 0.0, -factor, factor),)

@@ -197,11 +197,18 @@ def with_readable_names(
             names[name] = label
             taken.add(label)
 
+    return renamed(function, names)
+
+
+def renamed(function: PublicFunction, names: Mapping[str, str]) -> PublicFunction:
+    """The same steps with other names of arrays, those of arguments included."""
+
     def named(value: Value) -> Value:
         return replace(value, name=names.get(value.name, value.name))
 
     return replace(
         function,
+        inputs=tuple(replace(i, value=named(i.value)) for i in function.inputs),
         outputs=tuple(replace(o, value=named(o.value)) for o in function.outputs),
         steps=tuple(_renamed(step, named) for step in function.steps),
     )

@@ -85,6 +85,8 @@ def random_values(
         "weights": rng.uniform(0.5, 2.0, sizes["NU"]),
         "length": np.array(rng.uniform(0.5, 2.0) * size),
         "q0": q + drawn("NJ", 0.01),
+        "s": rng.uniform(-0.5, 1.5, count),
+        "step": drawn("NV", 0.3),
     }
     return found | _orientations(pose, count, rng)
 

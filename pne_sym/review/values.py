@@ -206,6 +206,7 @@ class Runs:
         return draft | {
             **{n: state[n] for n in ("X", "V", "A", "q")},
             "X0": X + 1e-3 * min(size, 1.0) * rng.normal(size=X.shape),
+            "X1": X + 0.1 * min(size, 1.0) * rng.normal(size=X.shape),
             "q_actuated": actuated(model.manifest, state["q"]),
         }
 

@@ -34,8 +34,11 @@ def vectors(
         "q0": guess,
         "tau": rng.uniform(-50.0, 50.0, (count, module.NU)),
         "weights": np.tile(rng.uniform(0.5, 2.0, module.NU), (count, 1)),
-        "q_actuated": np.resize(q, (count, module.NJ))[:, list(module._DRIVEN_JOINTS)],
+        "q_actuated": np.resize(q, (count, module.NJ))[:, list(module.ACTUATED)],
         "X0": near,
+        "X1": near + rng.uniform(-0.2, 0.2, near.shape),
+        "step": rng.uniform(-1.0, 1.0, (count, module.NV)),
+        "s": rng.uniform(-1.0, 2.0, count),
         "rpy": rng.uniform(-3.0, 3.0, (count, 3)),
         **_pose(module, near),
     }
@@ -50,10 +53,17 @@ def _pose(module: Any, X: Array) -> dict[str, Array]:
     return {"R": R, "t": X[:, :position]}
 
 
+POSE_HELPERS = (
+    *("rotation", "pose", "pose_from_rpy", "X_dot"),
+    *("retract", "difference", "interpolate"),
+)
+"""Functions without a model."""
+
+
 def from_numpy(module: Any, name: str, given: Mapping[str, Array], p: Any) -> list[Array]:
     """What the function of the NumPy module makes of these inputs, (states, flat) each."""
     given = dict(given)
-    options = {} if name in ("rotation", "pose", "pose_from_rpy", "X_dot") else {"p": p}
+    options = {} if name in POSE_HELPERS else {"p": p}
     if name == "inverse_dynamics_weighted":
         name = "inverse_dynamics"
         given["weights"] = given["weights"][0]

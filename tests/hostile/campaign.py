@@ -110,9 +110,9 @@ def interface_text(model: Interface, actuated: tuple[int, ...]) -> str:
 
 
 def _array_text(model: Interface, a: Array) -> str:
-    homes = {"X": f"{model.name}_HOME_X", "X0": f"{model.name}_HOME_X"}
+    homes = dict.fromkeys(("X", "X0", "X1"), f"{model.name}_HOME_X")
     homes |= {"q0": f"{model.name}_HOME_Q", "q_actuated": "home_drives"}
-    pose = a.name in ("X", "X0") and model.quaternion is not None
+    pose = a.name in ("X", "X0", "X1") and model.quaternion is not None
     quaternion = model.quaternion if pose else "(size_t)-1"
     flags = f"{int(a.optional)}, {int(a.positive)}"
     return f'{{"{a.name}", {a.size}, {quaternion}, {flags}, {homes.get(a.name, "NULL")}}}'

@@ -57,7 +57,9 @@ def run(script: str, path: Path) -> str:
     """What a script prints that runs with this folder on the path; any error is one."""
     program = octave()
     assert program is not None
-    lines = f"warning('error', 'Octave:undefined-return-values');addpath('{path}');\n{script}"
+    # Within the package, NAME.power is no other than it says.
+    lines = "warning('off', 'Octave:shadowed-function');"
+    lines += f"warning('error', 'Octave:undefined-return-values');addpath('{path}');\n{script}"
     with tempfile.TemporaryDirectory() as home:
         done = subprocess.run(
             [program, "--no-gui", "--norc", "--no-history", "--eval", lines],
@@ -144,7 +146,7 @@ def conforms(manipulator: Manipulator) -> None:
     good = vectors(m, GOOD)
     if m.NC:  # where the loops close: with more to be met than can be, no pose meets the rest
         X = m.project(good["X"])
-        q = m.inverse_kinematics(X)[:, list(m._DRIVEN_JOINTS)]
+        q = m.inverse_kinematics(X)[:, list(m.ACTUATED)]
         good |= {"X": X, "q_actuated": q}
     given = hostile(m, good)
     functions = [f for f in models.bundle(manipulator).program.public if f.is_exported]

@@ -39,7 +39,7 @@ def states(manipulator: Manipulator, m: Any) -> dict[str, Array]:
     q0 = np.tile(np.array(home.q), (STATES, 1))
     guess = {"q0": q0} if "q0" in m.M.__code__.co_varnames else {}
     q = m.inverse_kinematics(X, **guess)
-    joints = list(m._DRIVEN_JOINTS)
+    joints = list(m.ACTUATED)
     if hasattr(m, "rotation"):
         guess["R"] = m.rotation(X)
         guess["t"] = X[:, : {6: 3, 3: 0 if m.NQ > m.NV else 2}[m.NW]]
@@ -47,6 +47,9 @@ def states(manipulator: Manipulator, m: Any) -> dict[str, Array]:
     return {
         "X": X,
         "X0": X + 1e-4 * rng.uniform(-1.0, 1.0, X.shape),
+        "X1": X + 0.1 * rng.uniform(-1.0, 1.0, X.shape),
+        "step": rng.uniform(-0.5, 0.5, (STATES, m.NV)),
+        "s": rng.uniform(0.0, 1.0, STATES),
         "V": rng.uniform(-1.0, 1.0, (STATES, m.NV)),
         "A": rng.uniform(-5.0, 5.0, (STATES, m.NV)),
         "tau": rng.uniform(-5.0, 5.0, (STATES, m.NU)),

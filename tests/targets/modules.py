@@ -52,8 +52,11 @@ def vectors(m: Any, states: int = STATES) -> dict[str, Any]:
         "tau": rng.uniform(-5.0, 5.0, (states, m.NU)),
         "wrench": rng.uniform(-5.0, 5.0, (states, m.NW)),
         "weights": rng.uniform(0.5, 2.0, m.NU),
-        "q_actuated": q[:, list(m._DRIVEN_JOINTS)],
+        "q_actuated": q[:, list(m.ACTUATED)],
         "q0": np.tile(m.HOME_Q, (states, 1)),
+        "X1": X + 0.1 * rng.uniform(-1.0, 1.0, X.shape),
+        "step": rng.uniform(-0.5, 0.5, (states, m.NV)),
+        "s": rng.uniform(0.0, 1.0, states),
         "rpy": rng.uniform(-1.0, 1.0, (states, 3)),
     }
     if hasattr(m, "rotation"):

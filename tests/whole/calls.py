@@ -40,6 +40,9 @@ def states(c: Case, lead: tuple[int, ...], seed: int = 0) -> Vectors:
         "wrench": rng.uniform(-20.0, 20.0, (count, m.NW)),
         "q_actuated": q[:, actuated_indices(c.spec)],
         "X0": X + rng.uniform(-1e-3, 1e-3, X.shape),
+        "X1": X + rng.uniform(-0.1, 0.1, X.shape),
+        "step": rng.uniform(-0.5, 0.5, (count, m.NV)),
+        "s": rng.uniform(0.0, 1.0, count),
         "q0": np.array(guess_of(m, q).get("q0", q)),
         "rpy": rng.uniform(-1.0, 1.0, (count, 3)),
     }

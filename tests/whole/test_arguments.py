@@ -16,7 +16,7 @@ from tests.whole.cases import Array, case
 
 NAMES = ("fivebar_redundant", "hexapod_6x6r", "planar_3rpr", "spherical_3ups", "tripod_3rps")
 """Redundant drives, iteration, a plane, a fixed centre, constraints."""
-REQUIRED = {"X", "V", "A", "tau", "q_actuated", "X0", "t", "R", "rpy", "p"}
+REQUIRED = {"X", "V", "A", "tau", "q_actuated", "X0", "X1", "step", "s", "t", "R", "rpy", "p"}
 
 
 def calls(name: str) -> list[tuple[str, str]]:
@@ -67,6 +67,8 @@ def test_what_is_no_real_number(name: str, function: str, argument: str) -> None
         with pytest.raises(TypeError, match=message):
             called(**{**values, argument: bad})
     for bad, message in ((np.ones(99), "has shape"), ([[1.0, 2.0], [3.0]], "is no array of numb")):
+        if not value.shape and message == "has shape":
+            continue  # numbers may come in any shape: as many states
         with pytest.raises(ValueError, match=rf"^[\w ]+: {argument} {message}"):
             called(**{**values, argument: bad})
 

@@ -80,6 +80,7 @@ def _continued(text: str) -> str:
 def _facts(bundle: Bundle) -> dict[str, object]:
     """What the templates print."""
     program, code, public = bundle.program, Code(bundle), Public(bundle)
+    c = bundle.coordinates
     searches = {s.residual: s for f in program.public for s in f.steps if isinstance(s, Search)}
     return {
         "d": describe(bundle),
@@ -88,7 +89,8 @@ def _facts(bundle: Bundle) -> dict[str, object]:
         "fields": field_views(bundle),
         "dimensions": _dimensions,
         "default": _default,
-        "home": [column(values) for values in bundle.coordinates.home],
+        "actuated": column([c.joints.index(joint) + 1 for joint in c.actuators]),
+        "home": [column(values) for values in c.home],
         "exported": [public.exported(f) for f in program.public if f.is_exported],
         "meanings": {f.name: f.meaning for f in program.public if f.is_exported},
         "steps": [(f, inputs_read(program, f), public.lines(f)) for f in program.public],

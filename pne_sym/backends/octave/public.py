@@ -12,6 +12,8 @@ from pne_sym.program.public import Argument, Default, PublicFunction
 
 EXPRESSIONS = {
     "multiply": "{0} .* {1}",
+    "dot": "sum({0} .* {1}, 1)",
+    "scale": "{0} .* {1}",
     "entry": "{0}({numbers}, :)",
     "extend": "[{0}; zeros({rest}, n)]",
     "take": "{0}({numbers}, :, :)",
@@ -71,7 +73,7 @@ class Public(StepText):
         told += [f"p: parameters, by default {self.name}.parameters()."] * function.needs_model
         told += [described(a.name, a, _shape(a), "those at home") for a in function.optional]
         told += map(described, results, function.outputs, map(_shape, function.outputs))
-        sizes = [f"size({a.name}, {len(a.value.shape) + 1})" for a in function.required]
+        sizes = [f"size({a.name}, {len(_core(a)) + 1})" for a in function.required]
         sizes += [f"size({a.name}, 2) + isempty({a.name})" for a in function.optional]
         notes = (line for note in function.notes for line in textwrap.wrap(note, 92))
         return {
@@ -86,11 +88,16 @@ class Public(StepText):
     def _argument(self, a: Argument) -> str:
         given = f"'{a.name}', {a.name}"
         if a.default is None:
-            return f"{self.internal}argument({given}, {list(a.value.shape)}, n)"
+            return f"{self.internal}argument({given}, {list(_core(a))}, n)"
         home = a.default is Default.HOME_Q
         default = self.home_q if home else f"{a.default}({a.value.size}, 1)"
         return f"{self.internal}optional({given}, {default}, {str(a.positive).lower()}, n)"
 
 
 def _shape(a: Argument) -> str:
-    return " x ".join((*map(str, a.value.shape or (1,)), "n"))
+    return " x ".join((*map(str, _core(a)), "n"))
+
+
+def _core(a: Argument) -> tuple[int, ...]:
+    """The shape of one state: a number is a column with one entry."""
+    return a.value.shape or (1,)

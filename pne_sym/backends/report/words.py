@@ -131,6 +131,7 @@ FUNCTIONS = {
     "legs": "leg forces, for the leg reactions",
     "potential": "potential energy",
     "dissipation": "power that friction takes",
+    "motors": "rates of the motors, and the inverses of their ratios",
     "condition": "H and the least pivots, for the conditioning",
 }
 SPACES = {

@@ -8,7 +8,7 @@ from pne_sym.backends.python_public import definition
 from pne_sym.backends.steps import COMMON
 from pne_sym.backends.templating import defined, render
 from pne_sym.backends.xp.printers import PRINTER, Code, Steps
-from pne_sym.program.public import Default, PublicFunction
+from pne_sym.program.public import Default, PublicFunction, renamed
 
 
 class XpBackend:
@@ -21,7 +21,8 @@ class XpBackend:
 
     def emit(self, bundle: Bundle) -> dict[str, str]:
         """File name -> text."""
-        program = bundle.program
+        program, c = bundle.program, bundle.coordinates
+        public = [renamed(f, {"s": "s_given"}) for f in program.public]  # s is the state
         code, steps = Code(bundle, PRINTER), Steps(program)
         facts = {
             "d": describe(bundle),
@@ -30,7 +31,8 @@ class XpBackend:
             "prepare": code.prepared(),
             "functions": [(f, code.body(f)) for f in program.functions.values()],
             "stored": code.stored,
-            "steps": [(f, steps.lines(f)) for f in program.public],
+            "actuated": tuple(map(c.joints.index, c.actuators)),
+            "steps": [(f, steps.lines(f)) for f in public],
             "exported": {f.name: _public(f) for f in program.public if f.is_exported},
         }
         return {f"{bundle.name}_xp.py": render("xp/module.py.jinja", **facts)}

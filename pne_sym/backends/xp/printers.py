@@ -70,6 +70,8 @@ class Steps(StepText):
         "split": "{0}[:{n}, ...], {0}[{n}:, ...]",
         "join": "s.xp.concat(({0}, {1}))",
         "beside": "s.xp.concat(({0}, {1}), axis=1)",
+        "dot": "s.xp.sum({0} * {1}, axis=0)",
+        "scale": "{0} * {1}[None, ...]",
         "scale_columns": "{0} * {1}[None, ...]",
         "half_form": "0.5 * s.xp.sum({0} * s.times({1}, {0}), axis=0)",
         "impossible": "s.filled(s.xp.nan, {numbers})",

@@ -1,0 +1,104 @@
+"""Public functions about actuators, motors and power, as steps."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from pne_sym.program.algorithm import Algorithm
+from pne_sym.program.public import PublicFunction
+
+if TYPE_CHECKING:
+    from pne_sym.lowering.public import Writer
+
+
+def actuator_functions(w: Writer) -> list[PublicFunction]:
+    """Where actuators stand, what they do, what friction takes."""
+    found = [_dissipation(w), _momentum(w)]
+    if not w.n["NU"]:
+        return found
+    found += [_of_joints(w, *row) for row in _ROWS] + [_power(w)]
+    return found + (_motors(w) if "motors" in w.program.functions else [])
+
+
+_ROWS = (
+    ("actuator_positions", "Displacements", "X", "inverse_kinematics", "q", "m or rad"),
+    ("actuator_rates", "Rates", "X V", "joint_rates", "qd", "m/s or rad/s"),
+    (
+        "actuator_accelerations",
+        "Accelerations",
+        "X V A",
+        "joint_accelerations",
+        "qdd",
+        "m/s^2 or rad/s^2",
+    ),
+)
+
+
+def _of_joints(
+    w: Writer, name: str, what: str, inputs: str, function: str, array: str, unit: str
+) -> PublicFunction:
+    a = Algorithm()
+    (joints,) = a.run(function, w.program, array)
+    own = a.apply("take", joints, numbers=[w.c.joints.index(j) for j in w.c.actuators])
+    meaning = f"{what} of the actuated joints, in the order of tau."
+    out = w.made(own, array, f"{what.lower()} of the actuated joints [{unit}]", "NU")
+    return w.function(name, meaning, inputs, a, out, group="actuators", counted=function)
+
+
+def _power(w: Writer) -> PublicFunction:
+    a = Algorithm()
+    (H,) = a.run("H", w.program, "H")
+    force = a.apply("times", H, w.given("tau").value)
+    power = a.apply("dot", force, w.given("V").value)
+    out = w.made(power, "power", "power of the actuators [W]")
+    meaning = "Power that actuators give to the mechanism: tau times their rates."
+    return w.function("power", meaning, "X V tau", a, out, group="actuators")
+
+
+def _dissipation(w: Writer) -> PublicFunction:
+    a = Algorithm()
+    if "dissipation" in w.program.functions:
+        (power,) = a.run("dissipation", w.program, "dissipation")
+    else:
+        V = w.given("V").value
+        power = a.apply("subtract", V, V)  # nothing, of any motion
+    out = w.made(
+        a.apply("entry", power, numbers=[0]), "dissipation", "power that friction takes [W]"
+    )
+    meaning = "Power that friction takes, not negative; the rate of energy is power less this."
+    return w.function("dissipation", meaning, "X V", a, out, group="actuators")
+
+
+def _momentum(w: Writer) -> PublicFunction:
+    a = Algorithm()
+    (M,) = a.run("M", w.program, "M")
+    out = w.made(
+        a.apply("times", M, w.given("V").value), "momentum", "M V [kg m/s, kg m^2/s]", "NV"
+    )
+    meaning = "Generalised momentum M V."
+    return w.function("momentum", meaning, "X V", a, out, counted="M")
+
+
+def _motors(w: Writer) -> list[PublicFunction]:
+    rates, torques = Algorithm(), Algorithm()
+    turning, _ = rates.run("motors", w.program, "motor_rates", "per_turn")
+    _, per_turn = torques.run("motors", w.program, "motor_rates", "per_turn")
+    torque = torques.apply("multiply", per_turn, w.given("tau").value)
+    return [
+        w.function(
+            "motor_rates",
+            "Rates of the motors: gear ratio times rate, in the order of tau.",
+            "X V",
+            rates,
+            w.made(turning, "motor_rates", "of the motors [rad/s]", "NU"),
+            group="actuators",
+        ),
+        w.function(
+            "motor_torques",
+            "Torques of the motors that give tau: tau over the gear ratio, rotors included.",
+            "X V A tau",
+            torques,
+            w.made(torque, "motor_torques", "of the motors [N m]", "NU"),
+            group="actuators",
+        ),
+    ]
