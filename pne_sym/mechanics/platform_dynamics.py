@@ -60,6 +60,7 @@ _KEPT = (
     " Legs that restrict the platform keep the mass of their last links, so that the multipliers "
     "are the physical reactions."
 )
+_CARRIES = " The payload moves with the platform and is counted with it."
 _PLATFORM = (
     "Newton's and Euler's equations of the platform with the legs' forces; moments about the "
     "platform origin."
@@ -88,17 +89,18 @@ class PlatformWriter:
         gathered = any(leg.dynamics.tip_mass != 0 for leg in self.legs)
         kept = any(leg.motion.left_out for leg in self.legs)
         text = (_LUMPED if gathered else _NOT_LUMPED) + (_KEPT if kept else "")
+        text += _CARRIES if p.payload else ""
         book.chapter(
             "L", "Platform inertia with the masses gathered at the connection points", text
         )
-        R = p.centre
+        bodies = [(p.mass, p.centre, p.inertia), *([p.payload] if p.payload else [])]
 
         def point_inertia(mass: Any, r: Vector) -> Any:
             return mass * (Dot(r, r) * Identity - Outer(r, r))
 
         self.mass = book.define(
             "m_star",
-            self.total(lambda leg: leg.dynamics.tip_mass, p.mass),
+            self.total(lambda leg: leg.dynamics.tip_mass, sp.Add(*(mass for mass, *_ in bodies))),
             r"M^*",
             "mass of the platform with the gathered masses",
             Law.LUMPING,
@@ -107,7 +109,10 @@ class PlatformWriter:
         )
         self.moment = book.define(
             "h_star",
-            self.total(lambda leg: leg.dynamics.tip_mass * leg.g.platform_point, p.mass * R),
+            self.total(
+                lambda leg: leg.dynamics.tip_mass * leg.g.platform_point,
+                vector_sum(mass * centre for mass, centre, _ in bodies),
+            ),
             r"\mathbf h^*",
             "first moment about the platform origin",
             Law.LUMPING,
@@ -115,7 +120,9 @@ class PlatformWriter:
             body="platform",
             parameter=True,
         )
-        inertia = p.inertia + point_inertia(p.mass, R)
+        inertia = tensor_sum(
+            part for mass, R, own in bodies for part in (own, point_inertia(mass, R))
+        )
         self.inertia = book.define(
             "J_star",
             self.total(

@@ -10,7 +10,7 @@ import sympy as sp
 
 from pne_sym.derivation import PLATFORM, Book, Frame, Law, ParameterField, Quantity, Role, Rule
 from pne_sym.model.kinematics import TaskSpace
-from pne_sym.model.manipulator import Manipulator
+from pne_sym.model.manipulator import Body, Manipulator
 from pne_sym.vector import (
     Compose,
     Skew,
@@ -35,6 +35,7 @@ class PlatformMotion:
         mass: platform mass (scalar).
         centre: platform origin to centre of mass.
         inertia: tensor about the centre of mass.
+        payload: the same three of a second body, or None.
     """
 
     t: Vector
@@ -48,6 +49,7 @@ class PlatformMotion:
     mass: Any
     centre: Vector
     inertia: Any
+    payload: tuple[Any, Vector, Any] | None = None
 
 
 def introduce_platform(book: Book, manipulator: Manipulator, space: TaskSpace) -> PlatformMotion:
@@ -79,7 +81,8 @@ def introduce_platform(book: Book, manipulator: Manipulator, space: TaskSpace) -
             unit="1/s^2",
             body="base",
         )
-    mass, centre, inertia = _inertia(book, manipulator, space)
+    mass, centre, inertia = _inertia(book, manipulator.platform, space, _PLATFORM)
+    payload = manipulator.payload
     return PlatformMotion(
         vectors["t"],
         vectors["t_dot"],
@@ -92,6 +95,7 @@ def introduce_platform(book: Book, manipulator: Manipulator, space: TaskSpace) -
         mass,
         centre,
         inertia,
+        _inertia(book, payload, space, _PAYLOAD) if payload else None,
     )
 
 
@@ -194,63 +198,119 @@ def _motion(book: Book, manipulator: Manipulator, space: TaskSpace) -> dict[str,
     return given
 
 
-def _inertia(book: Book, manipulator: Manipulator, space: TaskSpace) -> tuple[Any, Any, Any]:
-    platform, table = manipulator.platform, book.parameters
+@dataclass(frozen=True)
+class _Carried:
+    """How a body fixed in the platform is called.
+
+    Attributes:
+        prefix: of its parameters; before "." in the full form.
+        path: of its table in the full form.
+        word: in sentences.
+        point, tensor: names of its centre of mass and its inertia.
+        mark: index in formulas.
+        centre, inertia: meanings of these parameters.
+        latex: of the centre of mass.
+    """
+
+    prefix: str
+    path: str
+    word: str
+    point: str
+    tensor: str
+    mark: str
+    centre: str
+    inertia: str
+    latex: str
+
+
+_PLATFORM = _Carried(
+    "platform",
+    "platform",
+    "the platform",
+    "R",
+    "I_p",
+    "p",
+    "centre of mass, platform frame",
+    "inertia tensor about the centre of mass, platform axes",
+    r"\mathbf R",
+)
+_PAYLOAD = _Carried(
+    "payload",
+    "platform.payload",
+    "the payload",
+    "R_payload",
+    "I_payload",
+    "l",
+    "centre of mass of the payload, platform frame",
+    "inertia tensor of the payload about its centre of mass, platform axes",
+    r"\mathbf R_l",
+)
+
+
+def _inertia(book: Book, body: Body, space: TaskSpace, names: _Carried) -> tuple[Any, Vector, Any]:
+    """Mass, centre of mass and inertia of a body fixed in the platform."""
+    table, prefix, path = book.parameters, names.prefix, names.path
     (mass,) = table.add(
         ParameterField(
-            "platform_mass",
+            f"{prefix}_mass",
             None,
             (),
             "kg",
-            "mass of the platform",
-            ("platform.mass",),
-            np.array(platform.mass),
+            f"mass of {names.word}",
+            (f"{path}.mass",),
+            np.array(body.mass),
             rule=Rule.MASS,
         )
     )
     centre = table.add(
         ParameterField(
-            "platform_centre_of_mass",
+            f"{prefix}_centre_of_mass",
             None,
             (3,),
             "m",
-            "centre of mass, platform frame",
-            ("platform.centre_of_mass",),
-            np.array(platform.centre_of_mass, dtype=float),
+            names.centre,
+            (f"{path}.centre_of_mass",),
+            np.array(body.centre_of_mass, dtype=float),
             (2,) if space.planar else (),
         )
     )
     book.note_quantity(
-        Quantity("platform_mass", "M_p", "mass of the platform", "kg", parameter=True)
+        Quantity(f"{prefix}_mass", f"M_{names.mark}", f"mass of {names.word}", "kg", parameter=True)
     )
+    whose = "" if names is _PLATFORM else f" of {names.word}"
     R = book.give(
-        VectorSymbol("R"),
+        VectorSymbol(names.point),
         "platform",
         centre,
         Quantity(
-            "R", r"\mathbf R", "platform origin to centre of mass", "m", "platform", parameter=True
+            names.point,
+            names.latex,
+            f"platform origin to centre of mass{whose}",
+            "m",
+            "platform",
+            parameter=True,
         ),
     )
     entries = table.add(
         ParameterField(
-            "platform_inertia",
+            f"{prefix}_inertia",
             None,
             (3, 3),
             "kg m^2",
-            "inertia tensor about the centre of mass, platform axes",
-            ("platform.inertia",),
-            np.array(platform.inertia, dtype=float),
+            names.inertia,
+            (f"{path}.inertia",),
+            np.array(body.inertia, dtype=float),
             rule=Rule.PLANAR_INERTIA if space.planar else Rule.INERTIA,
         )
     )
     inertia = book.give(
-        TensorSymbol("I_p", True),
+        TensorSymbol(names.tensor, True),
         "platform",
         symmetric_entries(entries, space.planar),
         Quantity(
-            "I_p",
-            r"\mathbf I_p",
-            "inertia tensor of the platform about its centre of mass",
+            names.tensor,
+            rf"\mathbf I_{names.mark}",
+            f"inertia tensor of {names.word} about its centre of mass",
             "kg m^2",
             "platform",
             parameter=True,

@@ -22,18 +22,19 @@ RELATIVE = 1e-9
 """Rounding allowed in symmetry, sign and triangle inequality, of the largest entry."""
 
 
-def read_body(entry: Entry, *, plane: bool) -> Body:
+def read_body(entry: Entry, *, plane: bool, also: tuple[str, ...] = ()) -> Body:
     """The inertia of a body.
 
     Args:
         entry: a table with mass (kg), centre_of_mass (m, body frame), inertia
             (kg m^2, body axes) and inertia_about ("centre_of_mass" or "origin").
+        also: other fields of the table, which are not looked at.
         plane: motion in the plane: two-component centre of mass, izz alone counts.
 
     Raises:
         SpecError: a negative mass, or an inertia that no body can have.
     """
-    table = entry.table(FIELDS)
+    table = entry.table((*FIELDS, *also))
     mass = not_negative(table.require("mass", "a number (kg)"))
     point = table.get("centre_of_mass")
     centre = vector(point, plane=plane) if point else ZERO3

@@ -31,6 +31,8 @@ def to_full_form(manipulator: Manipulator) -> Plain:
     if m.fixed_centre is not None:
         form["fixed_centre"] = list(m.fixed_centre)
     form["platform"] = _body(m.platform)
+    if m.payload is not None:
+        form["platform"] = _body(m.platform) | {"payload": _body(m.payload)}
     form["legs"] = [_leg(leg) for leg in m.legs]
     form["home"] = {"X": list(m.home.X), "q": list(m.home.q)}
     if m.symbols:

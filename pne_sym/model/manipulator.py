@@ -199,6 +199,7 @@ class Manipulator:
         fixed_centre: centre of rotation in the base frame (spherical only), m.
         symbols: how the report writes quantities of the derivation: (name, symbol) pairs,
             sorted by name.
+        payload: a second body fixed in the platform, in the platform frame; None: absent.
     """
 
     name: str
@@ -210,3 +211,4 @@ class Manipulator:
     home: Home
     fixed_centre: Vector3 | None = None
     symbols: tuple[tuple[str, str], ...] = ()
+    payload: Body | None = None

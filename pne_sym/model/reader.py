@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
+from pne_sym.model.body import FIELDS as BODY_FIELDS
 from pne_sym.model.body import read_body
 from pne_sym.model.entry import Entry, Table
 from pne_sym.model.errors import SpecError, printable, show
@@ -15,6 +16,7 @@ from pne_sym.model.files import parse, read_file
 from pne_sym.model.full_form import to_full_form
 from pne_sym.model.home import read_home
 from pne_sym.model.legs import is_plane, read_legs
+from pne_sym.model.limits import check_limits
 from pne_sym.model.manipulator import ZERO3, Body, Manipulator, Space, Vector3
 from pne_sym.model.names import read_name
 from pne_sym.model.symbols import read_symbols
@@ -32,6 +34,7 @@ FIELDS = (
     "home",
     "symbols",
 )
+PLATFORM_FIELDS = (*BODY_FIELDS, "payload")
 LONGEST_TITLE = 120
 STANDARD_GRAVITY = 9.81
 
@@ -84,14 +87,17 @@ def from_mapping(data: Mapping[str, object], source: str) -> Manipulator:
     space = Space(table.require("space", f"one of {', '.join(spaces)}").choice(spaces))
     legs = read_legs(table.require("legs", "a list of legs"), table.get("leg_types"), space)
     centre = _fixed_centre(table, space)
+    home = read_home(table.require("home", "a pose X and displacements q"), space, legs, centre)
+    check_limits(table.require("home", "a pose"), home, legs)
     return Manipulator(
         name=name,
         title=_title(table, name),
         space=space,
         gravity=_gravity(table, space),
         platform=_platform(table, space),
+        payload=_payload(table, space),
         legs=legs,
-        home=read_home(table.require("home", "a pose X and displacements q"), space, legs, centre),
+        home=home,
         fixed_centre=centre,
         symbols=read_symbols(table.get("symbols")),
     )
@@ -136,12 +142,24 @@ def _gravity(table: Table, space: Space) -> Vector3:
 
 def _platform(table: Table, space: Space) -> Body:
     entry = table.require("platform", "a table with mass, centre_of_mass, inertia")
-    platform = read_body(entry, plane=is_plane(space))
-    if space is Space.POINT and platform.centre_of_mass != ZERO3:
-        raise Entry(
-            entry.source, f"{entry.where}.centre_of_mass", list(platform.centre_of_mass)
-        ).fault("(0, 0) or nothing: in the space 'point' the platform is the output point")
-    return platform
+    return _at_output(entry, read_body(entry, plane=is_plane(space), also=("payload",)), space)
+
+
+def _payload(table: Table, space: Space) -> Body | None:
+    """The second body of the platform, or None."""
+    entry = table.require("platform", "a table").table(PLATFORM_FIELDS).get("payload")
+    if entry is None or entry.value is False:
+        return None
+    return _at_output(entry, read_body(entry, plane=is_plane(space)), space)
+
+
+def _at_output(entry: Entry, body: Body, space: Space) -> Body:
+    """The body; in the space of a point it is there."""
+    if space is Space.POINT and body.centre_of_mass != ZERO3:
+        raise Entry(entry.source, f"{entry.where}.centre_of_mass", list(body.centre_of_mass)).fault(
+            "(0, 0) or nothing: in the space 'point' the platform is the output point"
+        )
+    return body
 
 
 def _fixed_centre(table: Table, space: Space) -> Vector3 | None:

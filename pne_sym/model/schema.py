@@ -8,6 +8,7 @@ say (closed loops, unit axes, physical inertias) only the reader checks.
 from __future__ import annotations
 
 import json
+from typing import Any
 
 from pne_sym.model import body, home, joints, legs, names, read_effects, reader, symbols, values
 from pne_sym.model.joint_kinds import WrittenJoint
@@ -42,6 +43,7 @@ def json_schema() -> Schema:
             "axis": _axis(),
             "rotation": _rotation(),
             "body": _body(),
+            "platform": _platform(),
             **_effects(),
             "joint": _joint(),
             "jointOverride": _override(joints.FIELDS, _joint_fields()),
@@ -67,7 +69,7 @@ def _specification() -> Schema:
         "space": {"enum": spaces},
         "gravity": _ref("vector"),
         "fixed_centre": _list_of(_ref("number"), 3),
-        "platform": _ref("body"),
+        "platform": _ref("platform"),
         "leg_types": {
             "type": "object",
             "propertyNames": {"pattern": _NAME_PATTERN},
@@ -111,6 +113,16 @@ def _body() -> Schema:
     }
     table = _table("body", body.FIELDS, fields, ("mass",))
     return {**table, "dependentRequired": {"inertia_about": ["inertia"]}}
+
+
+def _platform() -> Schema:
+    """A body that may carry another one."""
+    payload: Schema = {
+        "anyOf": [_ref("body"), {"const": False}],
+        "description": MEANING["platform"]["payload"],
+    }
+    table: Any = _body()
+    return {**table, "properties": {**table["properties"], "payload": payload}}
 
 
 def _joint_fields() -> dict[str, Schema]:

@@ -26,6 +26,9 @@ MEANING: dict[str, dict[str, str]] = {
         "or in the plane the number izz. ixy = -integral of x y dm.",
         "inertia_about": "The point that the inertia is about. Default: centre_of_mass.",
     },
+    "platform": {
+        "payload": "A second body fixed in the platform, in its frame; parameters of its own.",
+    },
     "joint": {
         "kind": "R revolute, P prismatic, H helical, U universal, C cylindrical, S spherical.",
         "axis": "Unit vector in the preceding link's frame, or a direction such as x or -z.",

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import jsonschema
+import numpy as np
 import pytest
 
 from pne_sym.model.effects import Actuator, Friction, Limits, Spring
 from pne_sym.model.errors import SpecError
-from pne_sym.model.manipulator import Joint
+from pne_sym.model.limits import margin
+from pne_sym.model.manipulator import Body, Joint, JointKind
 from pne_sym.model.reader import from_mapping, to_full_form
 from pne_sym.model.schema import json_schema
 from tests.model.examples import spatial
@@ -115,6 +118,43 @@ def test_what_is_refused(fields: dict[str, Any], said: str) -> None:
     with pytest.raises(SpecError, match="joints") as caught:
         from_mapping(spec(**fields), "spec")
     assert said in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("between", "fits"),
+    [((0.4, 0.6), True), ((0.5, 0.9), True), ((0.51, 0.9), False), ((-2.0, 0.49), False)],
+)
+def test_home_within_limits(between: tuple[float, float], fits: bool) -> None:
+    form = spec(limits={"displacement": list(between)})
+    if fits:
+        from_mapping(form, "spec")
+        return
+    with pytest.raises(SpecError, match=r"home: home.q has 0.5 m at freedom 0 of legs\[0\]"):
+        from_mapping(form, "spec")
+
+
+def test_full_turns_of_hinges_do_not_count() -> None:
+    hinge = Joint(JointKind.REVOLUTE, (0.0, 0.0, 1.0), limits=Limits((3.0, 4.0)))
+    assert margin(hinge, -3.0) == pytest.approx(2 * np.pi - 3.0 - 3.0)
+    assert margin(hinge, 2.9) == pytest.approx(-0.1)
+    assert margin(replace(hinge, extra=True), -3.0) == pytest.approx(-6.0)
+    assert margin(Joint(JointKind.REVOLUTE, (0.0, 0.0, 1.0)), 9.0) == np.inf
+
+
+def test_payload() -> None:
+    form = spatial()
+    form["platform"]["payload"] = {"mass": 3.0, "centre_of_mass": [0.0, 0.1, 0.2]}
+    assert not list(VALIDATOR.iter_errors(form))
+    manipulator = from_mapping(form, "spec")
+    assert manipulator.payload == Body(3.0, (0.0, 0.1, 0.2))
+    assert from_mapping(to_full_form(manipulator), "again") == manipulator
+    assert not list(VALIDATOR.iter_errors(to_full_form(manipulator)))
+    form["platform"]["payload"]["mass"] = -1.0
+    with pytest.raises(SpecError, match=r"platform.payload.mass: value -1.0"):
+        from_mapping(form, "spec")
+    form["platform"]["payload"] = {"weight": 3.0}
+    with pytest.raises(SpecError, match=r"platform.payload: unknown field 'weight'"):
+        from_mapping(form, "spec")
 
 
 def test_a_leg_overrides_its_type() -> None:

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pne_sym.model.manipulator import Leg, Manipulator
+from pne_sym.model.manipulator import Body, Leg, Manipulator
 from tests.oracle.bodies import (
     Bodies,
     LinkMotion,
@@ -345,7 +345,13 @@ def _platform_bodies(manipulator: Manipulator, X: Array, nv: int) -> Bodies:
     """The platform's partial velocities by the entries of V."""
     twists = (twist_basis(manipulator.space) @ np.eye(task_size(manipulator.space), nv)).T
     pose = platform_motion(manipulator, X, twists, np.zeros_like(twists))
-    return bodies_of([manipulator.platform], [pose])
+    carried = _carried(manipulator)
+    return bodies_of(carried, [pose] * len(carried))
+
+
+def _carried(manipulator: Manipulator) -> list[Body]:
+    """The platform, and what it carries."""
+    return [manipulator.platform, *([manipulator.payload] if manipulator.payload else [])]
 
 
 def _evaluate(
@@ -369,7 +375,8 @@ def _evaluate(
         qd.append(rate)
         qdd.append(acceleration)
         remainders.append(remainder)
-    carried = motion_of([manipulator.platform], [pose])
+    fixed = _carried(manipulator)
+    carried = motion_of(fixed, [pose] * len(fixed))
     bodies = [leg.bodies.by(leg.rates) for leg in legs]
     pairs = list(zip([*bodies, platform], [*links, carried], strict=True))
     triples = list(zip(legs, qd, qdd, strict=True))
@@ -377,7 +384,7 @@ def _evaluate(
         qd=np.concatenate(qd),
         qdd=np.concatenate(qdd),
         links=links,
-        platform=only_body(carried),
+        platform=only_body(motion_of([manipulator.platform], [pose])),
         forces=np.sum([virtual_forces(*pair, gravity) for pair in pairs], axis=0)
         + np.sum([leg.rates.T @ _in_joints(leg, *rates) for leg, *rates in triples], axis=0),
         remainders=remainders,

@@ -84,6 +84,7 @@ _EVERYWHERE = {
     "friction",
     "spring",
     "motor",
+    "payload",
 }
 
 

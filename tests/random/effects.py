@@ -7,10 +7,14 @@ from dataclasses import replace
 import numpy as np
 
 from pne_sym.model.effects import Actuator, Friction, Spring
-from pne_sym.model.manipulator import Joint, Leg, Manipulator
+from pne_sym.model.manipulator import Body, Joint, Leg, Manipulator, Space
+from tests.oracle.coordinates import is_planar
+from tests.oracle.randomisation import random_inertia, vector3
 
 SHARE = 0.5
 """Of so many mechanisms some joints have some of these."""
+PAYLOAD = 0.4
+"""Of so many of these the platform carries something."""
 LIKELY = 0.4
 """Of so many joints of such a mechanism each of these."""
 
@@ -21,6 +25,11 @@ def with_effects(
     """The mechanism, now and then with friction, springs and motors in some joints."""
     if rng.random() > share:
         return manipulator
+    if rng.random() < PAYLOAD and manipulator.space is not Space.POINT:
+        flat = (1.0, 1.0, 0.0 if is_planar(manipulator.space) else 1.0)
+        centre = vector3(rng.uniform(-0.2, 0.2, 3) * flat)
+        payload = Body(float(rng.uniform(0.5, 3.0)), centre, random_inertia(rng, 0.05))
+        manipulator = replace(manipulator, payload=payload)
     plans: dict[object, list[str]] = {}
     legs = []
     for leg in manipulator.legs:

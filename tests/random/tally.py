@@ -109,6 +109,7 @@ def features(manipulator: Manipulator) -> frozenset[str]:
             *("massless link" for joint in joints if joint.link.is_massless),
             *("friction" for joint in joints if joint.friction),
             *("spring" for joint in joints if joint.spring),
+            *({"payload"} if manipulator.payload else ()),
             *("motor" for joint in joints if joint.actuator),
             *_ranks(manipulator),
         }

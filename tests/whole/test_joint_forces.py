@@ -12,7 +12,7 @@ import pytest
 
 from pne_sym.mechanics.derive import derive
 from pne_sym.model.effects import Actuator, Friction, Spring
-from pne_sym.model.manipulator import Joint, Manipulator
+from pne_sym.model.manipulator import Body, Joint, Manipulator
 from pne_sym.model.reader import checked
 from pne_sym.program.count import count_function
 from tests.backends.c_library import CLibrary
@@ -210,3 +210,23 @@ def test_symbols_tell_quantities_apart() -> None:
             latex = derivation.notation[name].latex
             assert used.setdefault(latex, name) == name or "ups_joint" not in name, latex
     assert sum(name.startswith("ups_joint") for name in used.values()) == 3 * 5 + 2
+
+
+def test_payload() -> None:
+    """A second body on the platform: in every answer, live, and gone with its mass."""
+    payload = Body(4.0, (0.1, -0.05, 0.0), ((0.1, 0, 0), (0, 0.2, 0), (0, 0, 0.3)))
+    plain = catalogue("planar_3rpr")
+    spec = checked(replace(plain, payload=payload))
+    assert_right(own(spec, state_at(spec, 3)))
+    m, base = module(spec), module(plain)
+    X = np.array(m.HOME_X)
+    np.testing.assert_allclose(m.M(X, m.Parameters().with_payload(0.0)), base.M(X), rtol=1e-14)
+    other = m.Parameters().with_payload(2.0, [0.0, 0.2, 0.0], np.diag([0, 0, 0.5]))
+    moved = checked(
+        replace(plain, payload=Body(2.0, (0.0, 0.2, 0.0), np.diag([0, 0, 0.5]).tolist()))
+    )
+    V = np.array([0.3, 0.1, -0.7])
+    np.testing.assert_allclose(m.Z(X, V, other), module(moved).Z(X, V), rtol=1e-13)
+    assert not hasattr(base.Parameters(), "with_payload")
+    with pytest.raises(ValueError, match="payload_mass must not be negative"):
+        m.Parameters().with_payload(-1.0)
