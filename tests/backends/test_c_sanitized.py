@@ -47,7 +47,7 @@ def caller(bundle: Bundle, api: CFunction) -> str:
     for a in arrays:
         lines.append(f"    static real in_{a.name}[STATES*{a.size}];")
     lines.append("    int status[STATES];")
-    home = {"X": f"{name}_HOME_X", "X0": f"{name}_HOME_X", "q0": f"{name}_HOME_Q"}
+    home = dict.fromkeys(("X", "X0", "X1"), f"{name}_HOME_X") | {"q0": f"{name}_HOME_Q"}
     for a in api.inputs:
         lines.append(f"    fill(in_{a.name}, {a.size}, {home.get(a.name, 'NULL')});")
     given = [f"in_{a.name}" for a in arrays]

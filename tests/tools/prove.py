@@ -150,7 +150,7 @@ def _caller(name: str, f: Function, form: str) -> list[str]:
 def _chosen(name: str, a: Array) -> list[str]:
     if a.positive:
         return [f"    choose(in_{a.name}, {BATCH * a.size}, NULL, 0, {BOX_OTHER});"]
-    homes = {"X": "HOME_X", "X0": "HOME_X", "q0": "HOME_Q"}
+    homes = {"X": "HOME_X", "X0": "HOME_X", "X1": "HOME_X", "q0": "HOME_Q"}
     if a.name in homes:
         where = f"{name}_{homes[a.name]}, 1, {BOX_POSE}"
     elif a.name in ROTATIONS:
