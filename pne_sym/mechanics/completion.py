@@ -27,7 +27,15 @@ from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.scope import moment_directions
 from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.model.closure import least_norm, leg_gap
-from pne_sym.model.kinematics import TASK_SPACES, Array, Pose, chain_pose, displaced, pose_at
+from pne_sym.model.kinematics import (
+    TASK_SPACES,
+    Array,
+    Pose,
+    at_home,
+    chain_pose,
+    displaced,
+    pose_at,
+)
 from pne_sym.model.manipulator import Manipulator, Space
 from pne_sym.vector import (
     Cross,
@@ -181,8 +189,7 @@ def leg_states(manipulator: Manipulator, g: LegGeometry, row: int) -> Iterator[_
     """A leg at home, then at other poses that it reaches, whatever the other legs do."""
     index = g.leg_type.indices[row]
     leg, space = manipulator.legs[index], manipulator.space
-    start = sum(len(other.joints) for other in manipulator.legs[:index])
-    q = np.array(manipulator.home.q[start : start + len(leg.joints)])
+    q = at_home(manipulator)[1][index]
     X = np.array(manipulator.home.X[: len(TASK_SPACES[space].pose_names)])
     rng, twist = np.random.default_rng(0), list(TASK_SPACES[space].components)
     for _ in range(_SAMPLES):
@@ -228,23 +235,23 @@ def _rank(rows: Array) -> int:
 
 
 _TERMS = glossary(r"""
-a_c# | \mathbf a_{c#} | - | given
+a_c#        | \mathbf a_{c#}      | -   | given
     coordinate direction of the last link, to complete the leg's freedoms
-t_c# | \mathbf t_{c#} | m | GEOMETRY
+t_c#        | \mathbf t_{c#}      | m   | GEOMETRY
     velocity of the connection point as it turns about the fixed centre
-f_c# | \mathbf f_{c#} |  | RECIPROCITY | Eq. 35
+f_c#        | \mathbf f_{c#}      |     | RECIPROCITY | Eq. 35
     force part of the wrench that does no work along the leg's freedoms, #
-m#_c% | m_{c%#} |  | RECIPROCITY | Eq. 35
+m#_c%       | m_{c%#}             |     | RECIPROCITY | Eq. 35
     moment part # of the wrench that does no work along the leg's freedoms, %
-size_c# | \ell_{c#} |  | GEOMETRY
+size_c#     | \ell_{c#}           |     | GEOMETRY
     size of the %
-n_c# | \mathbf n_{c#} | - | GEOMETRY | Eq. 35
+n_c#        | \mathbf n_{c#}      | -   | GEOMETRY | Eq. 35
     unit force that the leg's freedoms leave out
-n_c#:moment | \mathbf n_{c#} | 1/m | GEOMETRY | Eq. 35
+n_c#:moment | \mathbf n_{c#}      | 1/m | GEOMETRY | Eq. 35
     force part, zero where the loops close, of the unit moment that the leg's freedoms leave out
-mu#_c% | \mu_{c%#} |  | GEOMETRY | Eq. 35
+mu#_c%      | \mu_{c%#}           |     | GEOMETRY | Eq. 35
     moment along direction # that goes with it
-mu_c# | \boldsymbol\mu_{c#} |  | GEOMETRY | Eq. 35
+mu_c#       | \boldsymbol\mu_{c#} |     | GEOMETRY | Eq. 35
     the moment that goes with it
 """)
 
