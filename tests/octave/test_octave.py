@@ -127,6 +127,11 @@ def test_the_language_is_matlab_s_too(name: str) -> None:
         code = re.sub(r"'[^'\n]*'(?=[,)])", "", re.sub(r"%.*", "", text))
         assert not re.search(r'["#!]|\+\+|\+=|\bend\w|\b_|\*\*|\bprintf\b', code), path
         assert not re.search(r"\w{64}", code), path
+        # what MATLAB Coder refuses, or what would let arrays grow
+        assert not re.search(
+            r"[{}@]|\b(global|persistent|f?eval|str2func|\w+fun|struct)\b", code
+        ), path
+        assert not re.search(r"\bend *\+|(\b\w+) = \[\1[ ,;]", code), path
         assert not re.search(r"\bend ?\+ ?1", code), path
         heads = re.findall(r"^function (?:[^=(]*= )?(\w+)\(", text, re.MULTILINE)
         assert heads == ([] if path.endswith("Contents.m") else [Path(path).stem])
