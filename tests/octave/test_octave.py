@@ -11,7 +11,10 @@ import pytest
 from pne_sym.backends.octave import OctaveBackend
 from pne_sym.backends.target import TargetError
 from pne_sym.model.reader import from_text
+from pne_sym.program.evaluate import Status
+from pne_sym.program.interpret import Interpreter
 from tests import models
+from tests.backends.c_library import Array
 from tests.cli.program import pne_gen
 from tests.octave.conformance import Call, answers, conforms, octave, run, write
 from tests.program.test_public import interpreter
@@ -124,6 +127,11 @@ def test_the_language_is_matlab_s_too(name: str) -> None:
         code = re.sub(r"'[^'\n]*'(?=[,)])", "", re.sub(r"%.*", "", text))
         assert not re.search(r'["#!]|\+\+|\+=|\bend\w|\b_|\*\*|\bprintf\b', code), path
         assert not re.search(r"\w{64}", code), path
+        # what MATLAB Coder refuses, or what would let arrays grow
+        assert not re.search(
+            r"[{}@]|\b(global|persistent|f?eval|str2func|\w+fun|struct)\b", code
+        ), path
+        assert not re.search(r"\bend *\+|(\b\w+) = \[\1[ ,;]", code), path
         assert not re.search(r"\bend ?\+ ?1", code), path
         heads = re.findall(r"^function (?:[^=(]*= )?(\w+)\(", text, re.MULTILINE)
         assert heads == ([] if path.endswith("Contents.m") else [Path(path).stem])
@@ -134,3 +142,72 @@ def test_a_name_that_matlab_refuses() -> None:
     named = toml.replace('name = "planar_3rpr"', 'name = "otherwise"')
     with pytest.raises(TargetError, match=r"otherwise: .*a word of MATLAB"):
         OctaveBackend().emit(models.bundle(from_text(named, ".toml", "otherwise")))
+
+
+# --- what only impossible states, or states side by side, tell ----------------------------
+
+
+@in_octave
+def test_what_the_language_would_make_complex_or_skip_is_nan(tmp_path: Path) -> None:
+    """Guards hide it from statuses: functions of the package are called as they are."""
+    path = write(models.catalogue("planar_3rrr"), tmp_path)
+    run(
+        """
+        of = @(name) str2func(['planar_3rrr.internal.' name]);
+        f = of('root'); found = f([4, -4, 0, NaN, -0]);
+        assert(isreal(found)); assert(found, [2, NaN, 0, NaN, 0]);
+        f = of('least');
+        assert(f([1, 2, NaN, 3, NaN], [2, 1, 0, NaN, NaN]), [1, 1, NaN, NaN, NaN]);
+        f = of('largest'); assert(f([1, -2, NaN; -3, 0, 9]), [3, 2, NaN]);
+        f = of('solve'); a = cat(3, [1, 0; 0, 1], [1, 1; 1, 1 + 1e-13], [2, 0; 0, 4]);
+        assert(f(a, [1, 1, 2; 2, 2, 4]), [1, NaN, 1; 2, NaN, 1]);
+        """,
+        path,
+    )
+
+
+def last_reachable(reference: Interpreter, X: Array, ways: Array) -> Array:
+    """The last poses on some ways, to rounding, that legs reach: there one is stretched."""
+    near, far = np.zeros((len(ways), 1)), np.ones((len(ways), 1))
+    for _ in range(60):
+        middle = 0.5 * (near + far)
+        status = reference.call("inverse_kinematics", X=X + middle * ways).status[:, None]
+        near, far = np.where(status == 0, middle, near), np.where(status == 0, far, middle)
+    return X + near * ways
+
+
+@in_octave
+def test_a_search_that_begins_where_a_leg_is_singular_says_so() -> None:
+    manipulator = models.catalogue("fivebar_revolute")
+    m, reference = models.module(manipulator), interpreter(manipulator)
+    home = np.array(manipulator.home.X)
+    ways = 5.0 * np.random.default_rng(0).uniform(-1.0, 1.0, (40, len(home)))
+    X0 = np.concatenate((last_reachable(reference, home, ways), [home, home + 100.0]))
+    q = np.tile(m.inverse_kinematics(home)[list(m._DRIVEN_JOINTS)], (len(X0), 1))
+    call = Call(reference.functions["forward_kinematics"], {"q_actuated": q, "X0": X0})
+    wanted = reference.call("forward_kinematics", **call.given).status
+    assert {Status.OK, Status.UNREACHABLE, Status.SINGULAR} <= set(wanted.tolist())
+    ((_, status),) = answers(manipulator, [call])
+    np.testing.assert_array_equal(status, wanted)
+
+
+@in_octave
+@pytest.mark.parametrize(
+    ("name", "function"), [("fivebar_revolute", "forward_kinematics"), ("tripod_3rps", "project")]
+)
+def test_a_state_that_is_found_stays_as_it_is(name: str, function: str) -> None:
+    """Alone or beside states that take longer: the same digits."""
+    manipulator = models.catalogue(name)
+    m, reference = models.module(manipulator), interpreter(manipulator)
+    rng = np.random.default_rng(2)
+    sizes = np.array([1e-9, 1e-6, 1e-3, 3e-2, 1e-8, 1e-4])[:, None]
+    X = m.HOME_X + sizes * rng.uniform(-1.0, 1.0, (len(sizes), m.NQ))
+    q = np.tile(m.inverse_kinematics(m.HOME_X)[list(m._DRIVEN_JOINTS)], (len(X), 1))
+    given = {"X": X} if function == "project" else {"q_actuated": q, "X0": X}
+    taken = reference.functions[function]
+    calls = [Call(taken, given)]
+    calls += [Call(taken, {n: a[k : k + 1] for n, a in given.items()}) for k in range(len(X))]
+    ((together,), status), *alone = answers(manipulator, calls)
+    assert not status.any()
+    for k, ((found,), _) in enumerate(alone):
+        np.testing.assert_array_equal(together[k], found[0])
