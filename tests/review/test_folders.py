@@ -60,7 +60,8 @@ def test_folders_of_one_specification_with_another_value_are_compared(tmp_path: 
         (after / name).write_text(text)
     done = diff(before, after)
     assert done.exit_code == 1
-    assert "changed: default of platform.mass\n-   4.0\n+   7.0\n" in done.output
+    assert "different: platform: mass 4 -> 7 kg (+75 %)\n" in done.output
+    assert "platform: mass 4 -> 7 kg (+75 %)  [platform.mass]\n" in done.output
     assert "values not compared" not in done.output
     assert "planar_3rpr.c: differs, line" in done.output
     assert "printed by this pne-gen on both sides" in done.output
