@@ -107,7 +107,8 @@ class Alignment:
     Attributes:
         legs: after -> before.
         joints: leg after -> joint after -> joint before.
-        types: name of a leg type after -> before; several may stand for one.
+        types: name of a leg type after -> before; several may stand for one. None of types
+            that share no more than half of their joints.
     """
 
     legs: dict[int, int] = field(default_factory=dict)
@@ -159,10 +160,15 @@ def align(
         }
         for j, i in legs.items()
     }
+    alike = {
+        j: i
+        for j, i in legs.items()
+        if 2 * len(joints[j]) > max(len(sides[0][i]["joints"]), len(sides[1][j]["joints"]))
+    }
     owner = {leg: t["name"] for t in before["leg_types"] for leg in t["legs"]}
     types = {}
     for t in after["leg_types"]:
-        partners = Counter(owner[legs[leg]] for leg in t["legs"] if legs.get(leg) in owner)
+        partners = Counter(owner[alike[leg]] for leg in t["legs"] if alike.get(leg) in owner)
         if partners:
             types[t["name"]] = max(partners, key=lambda n: (partners[n], n == t["name"]))
     return Alignment(legs, joints, types)

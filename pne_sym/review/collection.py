@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from pne_sym.generation import InputError
+from pne_sym.review.manifests import manifest_of
 from pne_sym.review.markdown import Part
 from pne_sym.review.sources import Source, same_bytes
 
@@ -48,9 +49,11 @@ def _told(name: str, before: Source | None, after: Source | None, options: Optio
     from pne_sym.backends.target import TargetError
     from pne_sym.model.errors import SpecError, printable
 
-    if before is not None and after is not None and same_bytes(before, after):
-        return Part(name, "equal: identical text", is_equal=True)
     try:
+        if before is not None and after is not None and same_bytes(before, after):
+            if before.folder is not None:
+                manifest_of(before)
+            return Part(name, "equal: identical text", is_equal=True)
         if before is not None and after is not None:
             return _compared(name, before, after, options)
         known = after if after is not None else before

@@ -19,7 +19,7 @@ from pne_sym.review.difference import (
     Verdict,
 )
 from pne_sym.review.effect_text import effect_lines
-from pne_sym.review.interface_text import interface_lines, listed
+from pne_sym.review.interface_text import interface_lines, listed, ranges
 
 _SHOWN = 6
 """Equations of a kind shown with their formulas; further ones are listed by id."""
@@ -195,7 +195,7 @@ def _structure(found: Comparison) -> Iterator[str]:
         for e in group[:_SHOWN]:
             yield from _equation(e)
         if len(group) > _SHOWN:
-            yield from listed("and", (_place(e) for e in group[_SHOWN:]))
+            yield from listed("and", ranges([_place(e) for e in group[_SHOWN:]]))
     if found.statement is not None:
         s = found.statement
         yield (
@@ -292,7 +292,7 @@ def _details(found: Comparison) -> Iterator[str]:
         for e in rewritten[:_SHOWN]:
             yield from _equation(e)
         if len(rewritten) > _SHOWN:
-            yield from listed("and", (_place(e) for e in rewritten[_SHOWN:]))
+            yield from listed("and", ranges([_place(e) for e in rewritten[_SHOWN:]]))
     kept = (Verdict.IDENTICAL, Verdict.FOLLOWS)
     renamed = [e for e in found.equations if "renamed:" in e.note and e.verdict in kept]
     for e in renamed[:_SHOWN]:

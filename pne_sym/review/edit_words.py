@@ -29,6 +29,10 @@ def rank(path: str, told: str) -> tuple[int, str]:
     keys = [part.split("[")[0] for part in path.split(".")]
     if keys[0] in _LAST:
         return (20 + _LAST.index(keys[0]), "")
+    if keys[0] == "leg_types" and len(keys) == 2:
+        return (3, "")
+    if keys[0] == "legs" and keys[-1] == "type":
+        return (1, "")
     if told.endswith((" added", " removed", " inserted")) or "inserted" in told:
         return (1, "")
     return (next((k for k, of in enumerate(_RANKS) if keys[-1] in of), len(_RANKS)), "")
@@ -52,6 +56,8 @@ def words(
     """
     if isinstance(path[-1], int):
         return _entry(path, old, new, legs)
+    if len(path) == 2 and path[0] == "leg_types":
+        return f"leg type {path[1]} {_kind(old, new)}"
     place = _place(path[:-1], joint, legs)
     several = len({*legs}) > 1
     what = _change(str(path[-1]), old, new, several=several)

@@ -247,7 +247,8 @@ class DerivationComparer:
             legs = self.b.legs.get(leg_type, ())
             old = self.a.legs.get(self.names.alignment.types.get(leg_type, ""), ())
             if old and len(old) != len(legs):
-                yield f"a sum over {len(legs)} legs, was over {len(old)}"
+                count = f"{len(legs)} leg{'s' * (len(legs) > 1)}"
+                yield f"a sum over {count}, was over {len(old)}"
 
     def _is_numbered(self, before: str, after: str) -> bool:
         """Whether a name is another only by the alignment of joints and leg types."""

@@ -40,12 +40,12 @@ Folder = dict[str, Entry]
 """Path below the folder, with / -> what stands there; sorted."""
 
 
-def read_folder(folder: Path, most: int = MOST_FILES) -> Folder:
+def read_folder(folder: Path, most: int | None = None) -> Folder:
     """Every file below a folder on disk.
 
     Args:
         folder: where.
-        most: so many files at most.
+        most: so many files at most; by default `MOST_FILES`.
 
     Raises:
         InputError: a file cannot be read, or there is more than the limits allow.
@@ -62,7 +62,8 @@ def read_folder(folder: Path, most: int = MOST_FILES) -> Folder:
     return dict(sorted(found.items()))
 
 
-def _check(label: str, count: int, size: int, most: int) -> None:
+def _check(label: str, count: int, size: int, most: int | None) -> None:
+    most = most or MOST_FILES
     if count > most:
         raise InputError(f"{label[:100]} has more than {most} files")
     if size > LARGEST_FOLDER:
@@ -100,13 +101,13 @@ def _read(path: Path) -> Entry:
 _KINDS = {"100644": "file", "100755": "file", "120000": "link"}
 
 
-def read_tree(label: str, tree: str, most: int = MOST_FILES) -> Folder:
+def read_tree(label: str, tree: str, most: int | None = None) -> Folder:
     """Every file of a tree in git.
 
     Args:
         label: what the user called it.
         tree: REVISION:PATH of a folder.
-        most: so many files at most.
+        most: so many files at most; by default `MOST_FILES`.
 
     Raises:
         InputError: git cannot read it, or there is more than the limits allow.

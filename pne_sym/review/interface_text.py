@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator
 from pne_sym.review.difference import Change
 
 _SHOWN = 10
+_NUMBERED = re.compile(r"([\w-]*[A-Za-z])(\d+)")
 _ORDERS = ("joints", "actuators", "extra", "constraints")
 _SIZE = re.compile(r"'(\w+)': (\d+)")
 _LONG = 100
@@ -74,6 +75,26 @@ def _short(text: str) -> str:
 def _cut(start: str, names: list[str]) -> list[str]:
     more = [f"and {len(names) - _SHOWN} more"] if len(names) > _SHOWN else []
     return listed(start, [*names[:_SHOWN], *more])
+
+
+def ranges(ids: list[str]) -> list[str]:
+    """Ids that follow on one another told by the first and the last.
+
+    >>> ranges(["rpr-K1", "rpr-K2", "rpr-K3", "rpr-V1", "output M"])
+    ['rpr-K1 to K3', 'rpr-V1', 'output M']
+    """
+    runs: list[list[str]] = []
+    for name in ids:
+        if runs and _follows(runs[-1][-1], name):
+            runs[-1].append(name)
+        else:
+            runs.append([name])
+    return [r[0] if len(r) == 1 else f"{r[0]} to {r[-1].rpartition('-')[2]}" for r in runs]
+
+
+def _follows(one: str, other: str) -> bool:
+    a, b = _NUMBERED.fullmatch(one), _NUMBERED.fullmatch(other)
+    return a is not None and b is not None and a[1] == b[1] and int(a[2]) + 1 == int(b[2])
 
 
 def listed(start: str, names: Iterable[str]) -> list[str]:

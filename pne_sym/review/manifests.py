@@ -7,13 +7,14 @@ import re
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from pne_sym.backends.manifest import FORMAT
 from pne_sym.contents import GENERATOR
 from pne_sym.generation import InputError
 from pne_sym.model.errors import SpecError, printable
 from pne_sym.model.files import MAX_BYTES, parse
+from pne_sym.review.sources import Source, decoded
 
-FORMATS = tuple(range(1, FORMAT + 1))
+FORMATS = (1, 2)
+"""All that pne_sym has written; `backends.manifest` is not imported, it brings SymPy."""
 _LONGEST_TEXT = 2000
 _LARGEST = 100_000
 """Of any count, size or number of entries: hundreds of times what a model has."""
@@ -49,6 +50,21 @@ def read_manifest(text: str, source: str) -> dict[str, Any]:
         _check(manifest, {"targets": lambda value: _list(_is_name)(value) and bool(value)}, source)
     if fault := _contradiction(manifest):
         raise InputError(printable(f"{source} contradicts itself: {fault}"))
+    return manifest
+
+
+def manifest_of(source: Source) -> dict[str, Any]:
+    """The manifest of a generated folder.
+
+    Raises:
+        InputError: it is at fault, or of another model.
+    """
+    assert source.folder is not None
+    what = f"{source.label[:100]!r}: its manifest"
+    text = decoded(what, source.folder[f"{source.name}.json"].content)
+    manifest = read_manifest(text, what)
+    if manifest["name"] != source.name:
+        raise InputError(f"{what} {source.name}.json is of another model, {manifest['name']!r}")
     return manifest
 
 

@@ -8,9 +8,9 @@ from dataclasses import replace
 from pne_sym.generation import InputError, find
 from pne_sym.model.files import parse
 from pne_sym.model.reader import from_text
-from pne_sym.review.manifests import read_manifest
+from pne_sym.review.manifests import manifest_of
 from pne_sym.review.model import Model, from_folder, from_manipulator
-from pne_sym.review.sources import Source, decoded, find_source
+from pne_sym.review.sources import Source, find_source
 
 
 def find_version(text: str) -> Model:
@@ -53,10 +53,4 @@ def _specification(label: str, content: str, suffix: str) -> Model:
 
 def _folder(source: Source) -> Model:
     assert source.folder is not None
-    name = source.name
-    what = f"{source.label[:100]!r}: its manifest"
-    text = decoded(what, source.folder[f"{name}.json"].content)
-    manifest = read_manifest(text, what)
-    if manifest["name"] != name:
-        raise InputError(f"{what} {name}.json is of another model, {manifest['name']!r}")
-    return from_folder(source.label, manifest, source.folder)
+    return from_folder(source.label, manifest_of(source), source.folder)

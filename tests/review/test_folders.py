@@ -16,7 +16,7 @@ from pne_sym.generation import InputError
 from pne_sym.model.full_form import to_full_form
 from pne_sym.review import folders as reading
 from pne_sym.review.folders import read_folder
-from pne_sym.review.manifests import read_manifest
+from pne_sym.review.manifests import FORMATS, read_manifest
 from pne_sym.review.reproduction import reproduced
 from pne_sym.review.versions import find_version
 from tests.cli.test_diff import git
@@ -34,7 +34,7 @@ def manifest(name: str = MODEL) -> Manifest:
 @pytest.mark.parametrize("name", ["planar_3rpr", "fivebar_revolute", "tripod_3rps", "stewart"])
 def test_the_manifest_holds_what_the_folder_is_printed_from(name: str, tmp_path: Path) -> None:
     found = manifest(name)
-    assert found["format"] == 2
+    assert found["format"] == FORMATS[-1] == 2
     assert found["specification"] == json.loads(json.dumps(to_full_form(catalogue(name))))
     model = reproduced(find_version(str(write(tmp_path, name))))
     assert model.deviations == ()
@@ -60,7 +60,8 @@ def test_folders_of_one_specification_with_another_value_are_compared(tmp_path: 
         (after / name).write_text(text)
     done = diff(before, after)
     assert done.exit_code == 1
-    assert "changed: default of platform.mass\n-   4.0\n+   7.0\n" in done.output
+    assert "different: platform: mass 4 -> 7 kg (+75 %)\n" in done.output
+    assert "platform: mass 4 -> 7 kg (+75 %)  [platform.mass]\n" in done.output
     assert "values not compared" not in done.output
     assert "planar_3rpr.c: differs, line" in done.output
     assert "printed by this pne-gen on both sides" in done.output
