@@ -159,11 +159,12 @@ class Steps:
     def _buffer(self, name: str, size: int) -> str:
         return f"{name}[{size}*LANES]" if self.lanes else f"{name}[{size}]"
 
-    def _made(self, value: Value) -> str:
-        """An array for a value."""
+    def _made(self, value: Value, *, zero: bool = False) -> str:
+        """An array for a value; zero where analysers do not see that all of it is written."""
         self.at[value.name] = value.name if value.size else "NULL"
         if value.size:
-            self.buffers.append(self._buffer(value.name, value.size))
+            zeroed = " = {0}" * (zero or not self.lanes)
+            self.buffers.append(self._buffer(value.name, value.size) + zeroed)
         return self.at[value.name]
 
     def _inputs(self) -> list[str]:
@@ -231,7 +232,8 @@ class Steps:
         name, in_place = step.operation, self._is_solved(step)
         if in_place:
             self.at[step.targets[0].name] = "work"
-        targets = ["work"] if in_place else [self._made(t) for t in step.targets]
+        zero = name not in _ENTRIES and name != "solve"
+        targets = ["work"] if in_place else [self._made(t, zero=zero) for t in step.targets]
         if not any(t.size for t in step.targets):
             return []
         fields = self._fields(step, targets)
