@@ -12,7 +12,7 @@ from pne_sym.mechanics.inverse_kinematics import InverseKinematics
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.scope import right_angles
 from pne_sym.model.errors import SpecError
-from pne_sym.model.kinematics import Array, chain_pose, pose_at, rotation_about
+from pne_sym.model.kinematics import Array, at_home, chain_pose, rotation_about
 from pne_sym.model.manipulator import Leg, Manipulator
 from pne_sym.vector.evaluate import evaluate
 
@@ -25,11 +25,10 @@ def branch_signs(
     Raises:
         SpecError: a root vanishes at home, where two branches meet.
     """
-    starts = np.cumsum([0, *(len(leg.joints) for leg in manipulator.legs)])
     rows = []
-    pose = pose_at(manipulator.space, manipulator.home.X, manipulator.fixed_centre)
+    pose, displacements = at_home(manipulator)
     for index in g.leg_type.indices:
-        q = np.array(manipulator.home.q[starts[index] : starts[index + 1]])
+        q = displacements[index]
         rows.append(_signs_of_leg(manipulator.name, index, q, g, inverse, book, pose.R))
     return [tuple(row[k] for row in rows) for k in range(len(inverse.branches))]
 

@@ -27,7 +27,15 @@ from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.scope import moment_directions
 from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.model.closure import least_norm, leg_gap
-from pne_sym.model.kinematics import TASK_SPACES, Array, Pose, chain_pose, displaced, pose_at
+from pne_sym.model.kinematics import (
+    TASK_SPACES,
+    Array,
+    Pose,
+    at_home,
+    chain_pose,
+    displaced,
+    pose_at,
+)
 from pne_sym.model.manipulator import Manipulator, Space
 from pne_sym.vector import (
     Cross,
@@ -181,8 +189,7 @@ def leg_states(manipulator: Manipulator, g: LegGeometry, row: int) -> Iterator[_
     """A leg at home, then at other poses that it reaches, whatever the other legs do."""
     index = g.leg_type.indices[row]
     leg, space = manipulator.legs[index], manipulator.space
-    start = sum(len(other.joints) for other in manipulator.legs[:index])
-    q = np.array(manipulator.home.q[start : start + len(leg.joints)])
+    q = at_home(manipulator)[1][index]
     X = np.array(manipulator.home.X[: len(TASK_SPACES[space].pose_names)])
     rng, twist = np.random.default_rng(0), list(TASK_SPACES[space].components)
     for _ in range(_SAMPLES):

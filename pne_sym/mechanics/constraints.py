@@ -16,7 +16,7 @@ from pne_sym.mechanics.completion import Freedoms, LeftOut, completed_wrenches, 
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.scope import moment_directions
 from pne_sym.mechanics.terms import Writer, glossary
-from pne_sym.model.kinematics import chain_pose, pose_at
+from pne_sym.model.kinematics import at_home, chain_pose
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.vector import Cross, Dot, Vector, VectorSymbol, norm, vector_sum
 
@@ -126,12 +126,10 @@ def force_vanishes(manipulator: Manipulator, g: LegGeometry) -> bool:
     """Whether at home the wrenches that the legs leave out are pure moments."""
     if len(g.pairs) != 1:
         return False
-    starts = np.cumsum([0, *(len(leg.joints) for leg in manipulator.legs)])
-    pose = pose_at(manipulator.space, manipulator.home.X, manipulator.fixed_centre)
+    pose, displacements = at_home(manipulator)
     for index in g.leg_type.indices:
         leg = manipulator.legs[index]
-        q = np.array(manipulator.home.q[starts[index] : starts[index + 1]])
-        chain = chain_pose(leg, q)
+        chain = chain_pose(leg, displacements[index])
         leg_R_platform = np.array(leg.base_frame).T @ pose.R
         n = moment_directions(g.leg_type, leg, chain.last, leg_R_platform)
         if np.abs(n @ chain.spins).max(initial=0.0) > 1e-6:

@@ -16,7 +16,7 @@ import sympy as sp
 from pne_sym.derivation import Book, Law
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.structure import LegType
-from pne_sym.model.kinematics import chain_pose
+from pne_sym.model.kinematics import at_home, chain_pose
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.vector import Cross, Dot, Vector, ZeroVector, vector_sum
 
@@ -55,10 +55,8 @@ def lever_arms(manipulator: Manipulator) -> list[float]:
 
     With pitch, where the joint has one; zero for a leg that only slides.
     """
-    starts = np.cumsum([0, *(len(leg.joints) for leg in manipulator.legs)])
     found = []
-    for leg, start in zip(manipulator.legs, starts, strict=False):
-        q = np.array(manipulator.home.q[start : start + len(leg.joints)])
+    for leg, q in zip(manipulator.legs, at_home(manipulator)[1], strict=True):
         turns = [joint.turns for joint in leg.joints]
         rates = np.array([joint.turn for joint in leg.joints])[turns]
         arms = np.linalg.norm(chain_pose(leg, q).velocities[:, turns], axis=0) / rates

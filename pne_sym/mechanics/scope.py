@@ -8,7 +8,7 @@ from pne_sym.mechanics.leg_geometry import across
 from pne_sym.mechanics.scales import home_lengths
 from pne_sym.mechanics.structure import LegType, is_coordinate
 from pne_sym.model.errors import SpecError
-from pne_sym.model.kinematics import Array, ChainPose, TaskSpace, chain_pose, pose_at
+from pne_sym.model.kinematics import Array, ChainPose, TaskSpace, at_home, chain_pose
 from pne_sym.model.manipulator import Leg, Manipulator, PlatformJoint
 from pne_sym.model.platform_kinds.interface import Direction
 
@@ -40,13 +40,11 @@ def _check_independent(
     manipulator: Manipulator, leg_type: LegType, freedoms: list[int], *, planar: bool
 ) -> None:
     """Refuse a leg whose freedoms are dependent at home."""
-    starts = np.cumsum([0, *(len(leg.joints) for leg in manipulator.legs)])
-    pose = pose_at(manipulator.space, manipulator.home.X, manipulator.fixed_centre)
+    pose, displacements = at_home(manipulator)
     length = home_lengths(manipulator, leg_type).arm
     for index in leg_type.indices:
         leg = manipulator.legs[index]
-        q = np.array(manipulator.home.q[starts[index] : starts[index + 1]])
-        chain = chain_pose(leg, q)
+        chain = chain_pose(leg, displacements[index])
         columns = chain.velocities[:, freedoms] / length
         if planar:
             columns = columns[:2]

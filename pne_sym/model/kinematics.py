@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from pne_sym.model.manipulator import Joint, Leg, Space, Vector3
+from pne_sym.model.manipulator import Joint, Leg, Manipulator, Space, Vector3
 
 Array = npt.NDArray[np.float64]
 
@@ -200,6 +200,16 @@ def chain_pose(leg: Leg, q: Sequence[float] | Array, start: Pose = ORIGIN) -> Ch
         rotations.append(rotation)
     tip = point + rotation @ np.array(leg.platform_joint.offset)
     return ChainPose(leg.joints, tuple(origins), tuple(points), tuple(axes), tuple(rotations), tip)
+
+
+def at_home(manipulator: Manipulator) -> tuple[Pose, list[Array]]:
+    """The platform's pose, and the displacements of every leg."""
+    m, start, displacements = manipulator, 0, []
+    for leg in m.legs:
+        end = start + len(leg.joints)
+        displacements.append(np.array(m.home.q[start:end]))
+        start = end
+    return pose_at(m.space, m.home.X, m.fixed_centre), displacements
 
 
 def base_of(leg: Leg) -> Pose:
