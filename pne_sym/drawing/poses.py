@@ -123,7 +123,7 @@ def _along_the_way(
 
 def _between(space: Space, start: Array, goal: Array, part: float) -> Array:
     """A pose on the straight way; rotations by the shorter way."""
-    k = _quaternion_start(space)
+    k = TASK_SPACES[space].quaternion_at
     if k is None:
         return start + part * (goal - start)
     end, turn = goal.copy(), slice(k, k + 4)
@@ -138,7 +138,7 @@ def _coordinates(manipulator: Manipulator, X: Sequence[float]) -> Array:
     """X as an array, its quaternion of length one."""
     _check_length("X", X, len(manipulator.home.X))
     result = np.array(X, dtype=float)
-    k = _quaternion_start(manipulator.space)
+    k = TASK_SPACES[manipulator.space].quaternion_at
     if k is not None:
         turn = result[k : k + 4]
         largest = float(np.abs(turn).max())
@@ -149,11 +149,6 @@ def _coordinates(manipulator: Manipulator, X: Sequence[float]) -> Array:
         turn /= largest
         turn /= np.linalg.norm(turn)
     return result
-
-
-def _quaternion_start(space: Space) -> int | None:
-    names = TASK_SPACES[space].pose_names
-    return names.index(_QUATERNION[0]) if _QUATERNION[0] in names else None
 
 
 def _quaternion(rpy: Vector3) -> tuple[float, ...]:

@@ -23,23 +23,23 @@ from pne_sym.vector import Cross, Dot, Vector, VectorSymbol, norm, vector_sum
 _POWERS_OF_METRE = ("-", "m", "m^2", "m^3")
 
 _TERMS = glossary(r"""
-n_plane | \mathbf n | - | given
+n_plane    | \mathbf n                | -   | given
     normal of the plane
-n_c | \mathbf n_c |  | GEOMETRY | Eq. 35
+n_c        | \mathbf n_c              |     | GEOMETRY | Eq. 35
     unit vector that the leg's freedoms leave out
-n_c1 | \mathbf n_c |  | GEOMETRY | Eq. 35
+n_c1       | \mathbf n_c              |     | GEOMETRY | Eq. 35
     unit vector that the leg's freedoms leave out
-f_c_part | \mathbf f'_c |  | GEOMETRY
+f_c_part   | \mathbf f'_c             |     | GEOMETRY
     force that with the moment does no work along the leg's freedoms
-f_c_size | \lVert\mathbf f'_c\rVert |  | GEOMETRY
+f_c_size   | \lVert\mathbf f'_c\rVert |     | GEOMETRY
     its size
-n_c:force | \mathbf n_c |  | GEOMETRY | Eq. 35
+n_c:force  | \mathbf n_c              |     | GEOMETRY | Eq. 35
     unit force that the leg's freedoms leave out
-volume_c | \Delta_c |  | GEOMETRY
+volume_c   | \Delta_c                 |     | GEOMETRY
     triple product of the velocity vectors
-n_c:moment | \mathbf n_c | 1/m | GEOMETRY | Eq. 35
+n_c:moment | \mathbf n_c              | 1/m | GEOMETRY | Eq. 35
     force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-mu_c | \mu_c |  | GEOMETRY | Eq. 35
+mu_c       | \mu_c                    |     | GEOMETRY | Eq. 35
     moment that goes with it
 """)
 

@@ -121,63 +121,63 @@ _UNITS = {
     "orientation": ("-", "-", "-"),
 }
 _TERMS = glossary(r"""
-x_# | \mathbf x_{#} | m | GEOMETRY
+x_#              | \mathbf x_{#}         | m   | GEOMETRY
     from the origin of joint # to the connection point
-y_#_extra | y_{#} | U | given DISPLACEMENT
+y_#_extra        | y_{#}                 | U   | given DISPLACEMENT
     extra coordinate: displacement of joint #
-q_#:iterated | q_{#} | U | given DISPLACEMENT
+q_#:iterated     | q_{#}                 | U   | given DISPLACEMENT
     displacement of joint #, by iteration on the loop closure
-q_# | q_{#} | U | LOOP_CLOSURE DISPLACEMENT
+q_#              | q_{#}                 | U   | LOOP_CLOSURE DISPLACEMENT
     displacement of joint #
-c_# | c_{#} |  | LOOP_CLOSURE
+c_#              | c_{#}                 |     | LOOP_CLOSURE
     cosine of the angle of joint # from its reference direction
-s_# | s_{#} |  | LOOP_CLOSURE
+s_#              | s_{#}                 |     | LOOP_CLOSURE
     sine of the angle of joint # from its reference direction
-branch_# | \sigma_{#} | - | given constant
+branch_#         | \sigma_{#}            | -   | given constant
     assembly branch of joint #: +1 or -1, as at home
-ref_# | \hat{\mathbf x}^0_{#} | - | given
+ref_#            | \hat{\mathbf x}^0_{#} | -   | given
     reference direction of the angle of joint #, fixed in link %
-across_# | \hat{\mathbf y}^0_{#} | - | given
+across_#         | \hat{\mathbf y}^0_{#} | -   | given
     across the reference direction of joint #, fixed in link %
-link_x_# | \hat{\mathbf x}_{#} | - | given
+link_x_#         | \hat{\mathbf x}_{#}   | -   | given
     direction across axis #, fixed in link #
-link_y_# | \hat{\mathbf y}_{#} | - | given
+link_y_#         | \hat{\mathbf y}_{#}   | -   | given
     direction across axis #, fixed in link #
-un_# | u^x_{#} |  | LUMPING
+un_#             | u^x_{#}               |     | LUMPING
     component along the x axis of link # of the direction fixed in it
-um_# | u^y_{#} |  | LUMPING
+um_#             | u^y_{#}               |     | LUMPING
     component along the y axis of link # of the direction fixed in it
-uu_# | \upsilon_{#} |  | LUMPING
+uu_#             | \upsilon_{#}          |     | LUMPING
     squared length, across the axis, of the direction fixed in link #
-px_# | x_{#} |  | LOOP_CLOSURE
+px_#             | x_{#}                 |     | LOOP_CLOSURE
     component along the reference direction
-py_# | y_{#} |  | LOOP_CLOSURE
+py_#             | y_{#}                 |     | LOOP_CLOSURE
     component across the reference direction
-Kd_# | K^d_{#} | m^2 | LOOP_CLOSURE
+Kd_#             | K^d_{#}               | m^2 | LOOP_CLOSURE
     projection on the centre's direction, from the distance fixed by the joints beyond joint #
-Kc_# | K^c_{#} |  | LOOP_CLOSURE
+Kc_#             | K^c_{#}               |     | LOOP_CLOSURE
     factor of the cosine in the equation of joint #
-Ks_# | K^s_{#} |  | LOOP_CLOSURE
+Ks_#             | K^s_{#}               |     | LOOP_CLOSURE
     factor of the sine in the equation of joint #
-Kr_# | K^r_{#} |  | LOOP_CLOSURE
+Kr_#             | K^r_{#}               |     | LOOP_CLOSURE
     right-hand side of the equation of joint #
-rho2_# | \rho_{#}^2 |  | LOOP_CLOSURE
+rho2_#           | \rho_{#}^2            |     | LOOP_CLOSURE
     squared amplitude
-disc_# | \Delta_{#} |  | LOOP_CLOSURE
+disc_#           | \Delta_{#}            |     | LOOP_CLOSURE
     discriminant
-root_# | r_{#} |  | LOOP_CLOSURE
+root_#           | r_{#}                 |     | LOOP_CLOSURE
     root, with the sign of the branch
-root_#:amplitude | \rho_{#} |  | LOOP_CLOSURE
+root_#:amplitude | \rho_{#}              |     | LOOP_CLOSURE
     amplitude, with the sign of the branch
-root_#:nearest | \rho_{#} | m^2 | LOOP_CLOSURE
+root_#:nearest   | \rho_{#}              | m^2 | LOOP_CLOSURE
     amplitude: off the manifold the nearest angle is taken
-xi_# | \boldsymbol\xi_{#} |  | LOOP_CLOSURE RESOLVED
+xi_#             | \boldsymbol\xi_{#}    |     | LOOP_CLOSURE RESOLVED
     the vector from joint # to the connection point, resolved along link #
-from_centre_# | \mathbf y_{#} | m | GEOMETRY
+from_centre_#    | \mathbf y_{#}         | m   | GEOMETRY
     from the centre at zero displacement to the connection point
-px_#:slide | x_{#} | m | LOOP_CLOSURE
+px_#:slide       | x_{#}                 | m   | LOOP_CLOSURE
     component along axis #
-disc_#:slide | \Delta_{#} | m^2 | LOOP_CLOSURE
+disc_#:slide     | \Delta_{#}            | m^2 | LOOP_CLOSURE
     discriminant of the distance equation
 """)
 

@@ -45,65 +45,65 @@ _FORCE_PART = {True: "1/m", False: "-"}
 _MOMENT_PART = {True: "-", False: "m"}
 
 _TERMS = glossary(r"""
-r_# | \mathbf r_{#} | m | GEOMETRY
+r_#        | \mathbf r_{#}            | m       | GEOMETRY
     from joint # to the connection point, along the links
-S_dot | \dot{\mathbf S} | m/s | RATE POINT_VELOCITY | Sec. 2.5, step 1.1
+S_dot      | \dot{\mathbf S}          | m/s     | RATE POINT_VELOCITY | Sec. 2.5, step 1.1
     velocity of the connection point
-v_# | \mathbf v_{#} |  | RATE | Sec. 2.2, joint table
+v_#        | \mathbf v_{#}            |         | RATE | Sec. 2.2, joint table
     velocity of the connection point per rate of joint #
-o_# | \mathbf o_{#} |  | RECIPROCITY RECIPROCAL | Sec. 2.2, joint table
+o_#        | \mathbf o_{#}            |         | RECIPROCITY RECIPROCAL | Sec. 2.2, joint table
     moment part of reciprocal wrench #
-n_m# | \mathbf n_{m#} |  | GEOMETRY | Sec. 2.2, joint table
+n_m#       | \mathbf n_{m#}           |         | GEOMETRY | Sec. 2.2, joint table
     direction # of the moment that the platform joint transmits
-m#_% | m_{&#} |  | RECIPROCITY | Sec. 2.2, joint table
+m#_%       | m_{&#}                   |         | RECIPROCITY | Sec. 2.2, joint table
     moment part # of reciprocal wrench &
-S_dot_rest | \dot{\mathbf S}' | m/s | RATE
+S_dot_rest | \dot{\mathbf S}'         | m/s     | RATE
     velocity of the connection point left to the joints that are not extra
-eta_# | \eta_{#} | rad/s | RATE
+eta_#      | \eta_{#}                 | rad/s   | RATE
     rate at which the joints turn along moment direction #
-qd_# | \dot q_{#} | U/s | RECIPROCITY RATE
+qd_#       | \dot q_{#}               | U/s     | RECIPROCITY RATE
     rate of joint #
-omega_# | \boldsymbol\omega_{#} | rad/s | RATE
+omega_#    | \boldsymbol\omega_{#}    | rad/s   | RATE
     angular velocity of link #
-W_# | \mathbf W_{#} | 1/s^2 | DEFINITION symmetric
+W_#        | \mathbf W_{#}            | 1/s^2   | DEFINITION symmetric
     centripetal tensor of link #
-u_1 | \mathbf u_1 | m/s^2 | RATE | Eq. 23
+u_1        | \mathbf u_1              | m/s^2   | RATE | Eq. 23
     centripetal acceleration of the connection point
-a_p | \mathbf a_p | m/s^2 | RATE COLLECTED_ACCELERATION | Eq. 23
+a_p        | \mathbf a_p              | m/s^2   | RATE COLLECTED_ACCELERATION | Eq. 23
     acceleration of the connection point without its centripetal part
-S_ddot | \ddot{\mathbf S} | m/s^2 | RATE POINT_ACCELERATION | Eq. 23
+S_ddot     | \ddot{\mathbf S}         | m/s^2   | RATE POINT_ACCELERATION | Eq. 23
     acceleration of the connection point
-zeta_# | \boldsymbol\zeta_{#} | rad/s^2 | RATE
+zeta_#     | \boldsymbol\zeta_{#}     | rad/s^2 | RATE
     angular acceleration of link # from the turning of axis #
-bias | \mathfrak b | m/s^2 | RATE BIAS | Sec. 2.2
+bias       | \mathfrak b              | m/s^2   | RATE BIAS | Sec. 2.2
     acceleration of the connection point at zero joint accelerations
-rel | \ddot{\mathbf S}' ; \mathbf E | m/s^2 | RATE
+rel        | \ddot{\mathbf S}' ; \mathbf E | m/s^2   | RATE
     acceleration of the connection point left to the joint accelerations
-etad_# | \dot\eta_{#} ; \boldsymbol\eta_{#} | rad/s^2 | RATE
+etad_#     | \dot\eta_{#} ; \boldsymbol\eta_{#} | rad/s^2 | RATE
     acceleration with which the joints turn along moment direction #
-qdd_# | \ddot q_{#} ; \mathbf w_{#} | U/s^2 | RECIPROCITY JOINT_ACCELERATION | Eqs. 8, 9, 16
+qdd_#      | \ddot q_{#} ; \mathbf w_{#} | U/s^2   | RECIPROCITY JOINT_ACCELERATION | Eqs. 8, 9, 16
     acceleration of joint #
-nd_m# | \dot{\mathbf n}_{m#} | 1/s | RATE
+nd_m#      | \dot{\mathbf n}_{m#}     | 1/s     | RATE
     rate of moment direction #
-nu_# | \nu_{#} | rad/s^2 | RATE | Sec. 2.2, joint table
+nu_#       | \nu_{#}                  | rad/s^2 | RATE | Sec. 2.2, joint table
     bias of the angular acceleration along moment direction #
-alpha_# | \boldsymbol\alpha_{#} ; \boldsymbol\Omega_{#} | rad/s^2 | RATE
+alpha_#    | \boldsymbol\alpha_{#} ; \boldsymbol\Omega_{#} | rad/s^2 | RATE
     angular acceleration of link #
-a_o# | \mathbf a_{o#} ; \mathbf V_{#} | m/s^2 | RATE
+a_o#       | \mathbf a_{o#} ; \mathbf V_{#} | m/s^2   | RATE
     acceleration of the origin of joint #
-w_# | \mathbf w_{#} |  | RECIPROCITY RECIPROCAL | Sec. 2.3
+w_#        | \mathbf w_{#}            |         | RECIPROCITY RECIPROCAL | Sec. 2.3
     reciprocal vector %
-wn_# | \mathbf w_{c#} |  | RECIPROCITY RECIPROCAL | Sec. 2.3
+wn_#       | \mathbf w_{c#}           |         | RECIPROCITY RECIPROCAL | Sec. 2.3
     reciprocal vector %
-yd_# | \dot y_{#} | U/s | given RATE
+yd_#       | \dot y_{#}               | U/s     | given RATE
     rate of extra joint #
-ydd_# | \ddot y_{#} | U/s^2 | given JOINT_ACCELERATION
+ydd_#      | \ddot y_{#}              | U/s^2   | given JOINT_ACCELERATION
     acceleration of extra joint #
-beta_# | \boldsymbol\beta_{#} | rad/s^2 | RATE
+beta_#     | \boldsymbol\beta_{#}     | rad/s^2 | RATE
     angular acceleration of link # at zero joint accelerations
-B_# | \mathbf B_{#} | 1/s^2 | DEFINITION
+B_#        | \mathbf B_{#}            | 1/s^2   | DEFINITION
     acceleration tensor of link #
-B_#_o | \mathbf B^{\circ}_{#} | 1/s^2 | DEFINITION
+B_#_o      | \mathbf B^{\circ}_{#}    | 1/s^2   | DEFINITION
     remainder of the acceleration tensor of link #
 """)
 _WRENCH = {"title": "force part of reciprocal wrench {k}", "reference": "Sec. 2.2, joint table"}

@@ -51,8 +51,8 @@ def _read_x(entry: Entry, loops: Loops) -> Array:
             f"{len(names)} numbers ({', '.join(names)})", problem=f"{len(items)} numbers"
         )
     X = np.array([number(item) for item in items])
-    if "qw" in names:
-        start = names.index("qx")
+    start = TASK_SPACES[loops.space].quaternion_at
+    if start is not None:
         norm = math.hypot(*X[start : start + 4])
         if norm < TOLERANCE:
             raise entry.fault("a quaternion (qx, qy, qz, qw) other than zero")

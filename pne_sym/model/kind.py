@@ -71,7 +71,7 @@ class Kind(metaclass=Kinds):
             kind = cls.known[cls.letter] = object.__new__(cls)
             for family in cls.__mro__[1:]:
                 if issubclass(family, Kind) and family is not Kind:
-                    setattr(family, cls.__name__.upper(), kind)
+                    setattr(family, kind.name, kind)
 
     @property
     def value(self) -> str:
@@ -82,6 +82,17 @@ class Kind(metaclass=Kinds):
     def in_architecture(self) -> str:
         """How architectures such as 6-UPS write it: what has no letter is left out."""
         return self.letter if len(self.letter) == 1 else ""
+
+    @property
+    def name(self) -> str:
+        """The attribute of its family that it is, such as REVOLUTE."""
+        return type(self).__name__.upper()
+
+    def __eq__(self, other: object) -> bool:
+        return self.letter == other if isinstance(other, str) else self is other
+
+    def __hash__(self) -> int:
+        return hash(self.letter)
 
     def __str__(self) -> str:
         return self.letter

@@ -50,7 +50,12 @@ class TaskSpace:
     @property
     def has_quaternion(self) -> bool:
         """Whether orientation is given by a quaternion."""
-        return "qw" in self.pose_names
+        return self.quaternion_at is not None
+
+    @property
+    def quaternion_at(self) -> int | None:
+        """Where the quaternion of the orientation begins in X, if there is one."""
+        return self.pose_names.index("qx") if "qx" in self.pose_names else None
 
 
 _QUATERNION = ("qx", "qy", "qz", "qw")
@@ -105,9 +110,9 @@ def pose_at(space: Space, X: Sequence[float], centre: Vector3 | None) -> Pose:
 
 def displaced(space: Space, X: Array, step: Array) -> Array:
     """Platform coordinates moved by a small twist (components as in `TaskSpace`)."""
-    if not TASK_SPACES[space].has_quaternion:
+    start = TASK_SPACES[space].quaternion_at
+    if start is None:
         return X + step
-    start = 3 if space is Space.SPATIAL else 0
     spin = step[start : start + 3]
     moved = X.copy()
     moved[:start] += step[:start]

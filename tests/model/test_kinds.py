@@ -33,7 +33,9 @@ def test_lists_are_in_order() -> None:
 def test_a_kind_is_one_object(kind: Kind) -> None:
     assert copy.deepcopy(kind) is pickle.loads(pickle.dumps(kind)) is kind
     family = PlatformJointKind if isinstance(kind, PlatformJointKind) else WrittenJoint
-    assert family(kind.letter) is kind is getattr(family, type(kind).__name__.upper())
+    assert family(kind.letter) is kind is getattr(family, kind.name)
+    assert kind == kind.letter == str(kind) == kind.value == f"{kind}"
+    assert [other for other in family if kind == other] == [kind]
 
 
 def test_no_kind_of_this_letter() -> None:
