@@ -147,7 +147,9 @@ class Steps:
             "int *code",
         ]
         body = [*head, "verdict why;", *lines]
-        kind = "INLINE" if self.lanes else "static"
+        # once in the function that users call; apart where several call it
+        alone = self.f.is_exported and "weights" not in self.read
+        kind = "INLINE" if alone else "static"
         return Routine.of(f"{self.f.name}_any", parameters, body, kind)
 
     # ---- arrays ------------------------------------------------------------------------------

@@ -32,6 +32,8 @@ CASES: dict[str, list[tuple[tuple[Shape, ...], tuple[int, ...]]]] = {
     "divide_rows": [(((3, 4), ()), (0, 2))],
     "choose_length": [(((2,), ()), ())],
     "multiply": [(((4,), (4,)), ())],
+    "dot": [(((4,), (4,)), ())],
+    "scale": [(((4,), ()), ())],
     "inverse_root": [(((4,),), ())],
     "extend": [(((4,),), (6,)), (((4,),), (4,))],
     "take": [(((5,),), (1, 2, 3)), (((5,),), (4, 0)), (((5, 2),), (1,)), (((5,),), ())],
@@ -56,6 +58,7 @@ CASES: dict[str, list[tuple[tuple[Shape, ...], tuple[int, ...]]]] = {
     "quaternion_of_rpy": [(((3,),), ())],
     "quaternion_rate": [(((4,), (3,)), ())],
     "turn_quaternion": [(((4,), (3,)), ())],
+    "turn_between": [(((4,), (4,)), ())],
 }
 PROJECTED = ("resolve", "null_basis")
 """Bases: what they span is compared."""
