@@ -127,7 +127,7 @@ random: $(VENV)/test.stamp ## Derive RANDOM_COUNT (600) mechanisms drawn from RA
 	$(BIN)/python -m tests.random.tally --count $(RANDOM_COUNT) --seed $(RANDOM_SEED) --jobs 2
 
 .PHONY: mutants
-mutants: $(VENV)/test.stamp ## Plant about 200 faults, one at a time in a copy (MUTANTS, MUTANT_JOBS): tests must find each
+mutants: $(VENV)/test.stamp ## Plant about 100 faults, one at a time in a copy (MUTANTS, MUTANT_JOBS): tests must find each
 	$(BIN)/python -m tests.mutants.run --jobs $(MUTANT_JOBS) --only $(MUTANTS)
 
 .PHONY: analyse

@@ -33,10 +33,10 @@ HARMLESS = Fault(
 
 
 def test_there_are_enough_of_every_kind() -> None:
-    assert len(FAULTS) >= 150
+    assert len(FAULTS) >= 100
     assert len({f.name for f in FAULTS}) == len(FAULTS)
     assert len({(f.file, f.before, f.after) for f in FAULTS}) == len(FAULTS)
-    parts = ("mechanics", "lowering", "program", "backends", "model", "review", "vector")
+    parts = ("mechanics", "lowering", "program", "backends", "model", "vector")
     for folder in (*(f"pne_sym/{p}/" for p in parts), "templates/numpy/", "templates/c/"):
         assert sum(f.file.startswith(folder) for f in FAULTS) >= 2, folder
 
@@ -139,7 +139,7 @@ def test_survivors_late_finds_and_wrong_rows(tmp_path: Path) -> None:
 
 
 def test_a_mutant_that_runs_on_and_on_is_ended() -> None:
-    endless = replaced(after="while True: pass")
+    endless = replaced(after='__import__("time").sleep(1e6)')
     outcome = try_fault(endless, 15.0)
     assert outcome.verdict is Verdict.TIMEOUT
     assert not outcome.verdict.is_good
