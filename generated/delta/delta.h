@@ -114,6 +114,9 @@ typedef struct {
 extern const delta_params delta_default_params;
 extern const delta_real delta_HOME_X[DELTA_NQ];
 extern const delta_real delta_HOME_Q[DELTA_NJ];
+/* Places of the actuated joints in q, and their names, in the order of tau. */
+extern const size_t delta_ACTUATED[DELTA_NU];
+extern const char *const delta_ACTUATOR_NAMES[DELTA_NU];
 
 /* Prepare a model.  DELTA_INVALID, and the model is all NaN: a parameter is not finite or beyond
    1e+12; a mass is negative; an inertia is not symmetric, or has a negative principal moment,
@@ -139,15 +142,8 @@ int delta_H(const delta_model *model, const delta_real *X, delta_real *H);
 size_t delta_H_batch(const delta_model *model, size_t n, const delta_real *X, delta_real *H, int
     *status);
 
-/* M, Z and H together, sharing the work. 855 mul, 564 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V
-   (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
-int delta_dynamics(const delta_model *model, const delta_real *X, const delta_real *V, delta_real
-    *M, delta_real *Z, delta_real *H);
-size_t delta_dynamics_batch(const delta_model *model, size_t n, const delta_real *X, const
-    delta_real *V, delta_real *M, delta_real *Z, delta_real *H, int *status);
-
-/* Displacements q of all joints, on the assembly branch of home. 120 mul, 66 add, 6 div, 6 sqrt,
-   9 trig. In: X (NQ). Out: q (NJ). */
+/* Displacements q of all joints. They are those of the assembly branch of home. 120 mul, 66 add,
+   6 div, 6 sqrt, 9 trig. In: X (NQ). Out: q (NJ). */
 int delta_inverse_kinematics(const delta_model *model, const delta_real *X, delta_real *q);
 size_t delta_inverse_kinematics_batch(const delta_model *model, size_t n, const delta_real *X,
     delta_real *q, int *status);
@@ -166,6 +162,13 @@ int delta_joint_accelerations(const delta_model *model, const delta_real *X, con
 size_t delta_joint_accelerations_batch(const delta_model *model, size_t n, const delta_real *X,
     const delta_real *V, const delta_real *A, delta_real *accelerations, int *status);
 
+/* M, Z and H together, sharing the work. 855 mul, 564 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V
+   (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
+int delta_dynamics(const delta_model *model, const delta_real *X, const delta_real *V, delta_real
+    *M, delta_real *Z, delta_real *H);
+size_t delta_dynamics_batch(const delta_model *model, size_t n, const delta_real *X, const
+    delta_real *V, delta_real *M, delta_real *Z, delta_real *H, int *status);
+
 /* Actuator forces tau for the acceleration A, by Eq. 3. 633 mul, 417 add, 12 div, 6 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU). */
@@ -182,44 +185,107 @@ int delta_forward_dynamics(const delta_model *model, const delta_real *X, const 
 size_t delta_forward_dynamics_batch(const delta_model *model, size_t n, const delta_real *X, const
     delta_real *V, const delta_real *tau, const delta_real *wrench, delta_real *A, int *status);
 
-/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
-   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
+/* A with the entries of passive extra coordinates that the others allow. It is A: there are no
+   passive extra coordinates, whose accelerations would follow. In: X (NQ), V (NV), A (NV), wrench
+   (NW, or NULL). Out: completed (NV). */
 int delta_complete_acceleration(const delta_model *model, const delta_real *X, const delta_real
     *V, const delta_real *A, const delta_real *wrench, delta_real *completed);
 size_t delta_complete_acceleration_batch(const delta_model *model, size_t n, const delta_real *X,
     const delta_real *V, const delta_real *A, const delta_real *wrench, delta_real *completed, int
     *status);
 
-/* Force of each leg on the platform at its platform joint, base axes. 639 mul, 411 add, 12 div, 6
-   sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
-   forces (3 x 3). */
+/* Force of each leg on the platform at its platform joint, base axes. The actuators give the
+   forces of inverse_dynamics. 639 mul, 411 add, 12 div, 6 sqrt, 0 trig; inverse dynamics apart.
+   In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (3 x 3). */
 int delta_leg_reactions(const delta_model *model, const delta_real *X, const delta_real *V, const
     delta_real *A, const delta_real *wrench, delta_real *forces);
 size_t delta_leg_reactions_batch(const delta_model *model, size_t n, const delta_real *X, const
     delta_real *V, const delta_real *A, const delta_real *wrench, delta_real *forces, int *status);
 
-/* Kinetic and potential energy; the latter is zero at the base origin. In: X (NQ), V (NV). Out:
-   kinetic (1), potential (1). */
+/* Kinetic and potential energy [J]; the latter is zero at the base origin. In: X (NQ), V (NV).
+   Out: kinetic (1), potential (1). */
 int delta_energy(const delta_model *model, const delta_real *X, const delta_real *V, delta_real
     *kinetic, delta_real *potential);
 size_t delta_energy_batch(const delta_model *model, size_t n, const delta_real *X, const
     delta_real *V, delta_real *kinetic, delta_real *potential, int *status);
 
-/* X at which the driven joints stand at q_actuated, by Gauss-Newton from X0; extra coordinates
-   that the drives do not determine stay. In: q_actuated (NU), X0 (NQ). Out: X (NQ). */
-int delta_forward_kinematics(const delta_model *model, const delta_real *q_actuated, const
-    delta_real *X0, delta_real *X);
-size_t delta_forward_kinematics_batch(const delta_model *model, size_t n, const delta_real
-    *q_actuated, const delta_real *X0, delta_real *X, int *status);
-
-/* Singular values of H in descending order, moment rows divided by the rms distance of the
-   platform points from their centroid; for every leg the least tested pivot as a fraction of its
-   scale. 262 mul, 147 add, 9 div, 13 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+/* How far a pose is from singularities: singular values of H, rows of moments divided by a
+   length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
+   distance of the platform points from their centroid, or where they coincide the rms size of the
+   legs. 262 mul, 147 add, 9 div, 13 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
    sigma (3), legs (3). */
 int delta_condition(const delta_model *model, const delta_real *X, delta_real *sigma, delta_real
     *legs);
 size_t delta_condition_batch(const delta_model *model, size_t n, const delta_real *X, delta_real
     *sigma, delta_real *legs, int *status);
+
+/* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
+   that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
+   X0 (NQ). Out: X (NQ). */
+int delta_forward_kinematics(const delta_model *model, const delta_real *q_actuated, const
+    delta_real *X0, delta_real *X);
+size_t delta_forward_kinematics_batch(const delta_model *model, size_t n, const delta_real
+    *q_actuated, const delta_real *X0, delta_real *X, int *status);
+
+/* Power that friction takes, not negative; the rate of energy is power less this. In: X (NQ), V
+   (NV). Out: dissipation (1). */
+int delta_dissipation(const delta_model *model, const delta_real *X, const delta_real *V,
+    delta_real *dissipation);
+size_t delta_dissipation_batch(const delta_model *model, size_t n, const delta_real *X, const
+    delta_real *V, delta_real *dissipation, int *status);
+
+/* Generalised momentum M V. 516 mul, 324 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+   momentum (NV). */
+int delta_momentum(const delta_model *model, const delta_real *X, const delta_real *V, delta_real
+    *momentum);
+size_t delta_momentum_batch(const delta_model *model, size_t n, const delta_real *X, const
+    delta_real *V, delta_real *momentum, int *status);
+
+/* Displacements of the actuated joints, in the order of tau. 120 mul, 66 add, 6 div, 6 sqrt, 9
+   trig. In: X (NQ). Out: q (NU). */
+int delta_actuator_positions(const delta_model *model, const delta_real *X, delta_real *q);
+size_t delta_actuator_positions_batch(const delta_model *model, size_t n, const delta_real *X,
+    delta_real *q, int *status);
+
+/* Rates of the actuated joints, in the order of tau. 297 mul, 156 add, 12 div, 6 sqrt, 0 trig.
+   In: X (NQ), V (NV). Out: rates (NU). */
+int delta_actuator_rates(const delta_model *model, const delta_real *X, const delta_real *V,
+    delta_real *rates);
+size_t delta_actuator_rates_batch(const delta_model *model, size_t n, const delta_real *X, const
+    delta_real *V, delta_real *rates, int *status);
+
+/* Accelerations of the actuated joints, in the order of tau. 414 mul, 213 add, 12 div, 6 sqrt, 0
+   trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
+int delta_actuator_accelerations(const delta_model *model, const delta_real *X, const delta_real
+    *V, const delta_real *A, delta_real *accelerations);
+size_t delta_actuator_accelerations_batch(const delta_model *model, size_t n, const delta_real *X,
+    const delta_real *V, const delta_real *A, delta_real *accelerations, int *status);
+
+/* Power that actuators give to the mechanism: tau times their rates. In: X (NQ), V (NV), tau
+   (NU). Out: power (1). */
+int delta_power(const delta_model *model, const delta_real *X, const delta_real *V, const
+    delta_real *tau, delta_real *power);
+size_t delta_power_batch(const delta_model *model, size_t n, const delta_real *X, const delta_real
+    *V, const delta_real *tau, delta_real *power, int *status);
+
+/* X moved by a displacement: (t + d, exp([phi]) R, y + dy) of step = (d, phi, dy). In: X (NQ),
+   step (NV). Out: X_moved (NQ). */
+int delta_retract(const delta_real *X, const delta_real *step, delta_real *X_moved);
+size_t delta_retract_batch(size_t n, const delta_real *X, const delta_real *step, delta_real
+    *X_moved, int *status);
+
+/* The displacement from X0 to X1, the inverse of retract; rotations the shorter way. In: X0 (NQ),
+   X1 (NQ). Out: step (NV). */
+int delta_difference(const delta_real *X0, const delta_real *X1, delta_real *step);
+size_t delta_difference_batch(size_t n, const delta_real *X0, const delta_real *X1, delta_real
+    *step, int *status);
+
+/* X0 moved by s times the displacement to X1: straight on, turning about one axis. In: X0 (NQ),
+   X1 (NQ), s (1). Out: X (NQ). */
+int delta_interpolate(const delta_real *X0, const delta_real *X1, const delta_real *s, delta_real
+    *X);
+size_t delta_interpolate_batch(size_t n, const delta_real *X0, const delta_real *X1, const
+    delta_real *s, delta_real *X, int *status);
 
 #ifdef __cplusplus
 }

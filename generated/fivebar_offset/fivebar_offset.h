@@ -133,6 +133,9 @@ typedef struct {
 extern const fivebar_offset_params fivebar_offset_default_params;
 extern const fivebar_offset_real fivebar_offset_HOME_X[FIVEBAR_OFFSET_NQ];
 extern const fivebar_offset_real fivebar_offset_HOME_Q[FIVEBAR_OFFSET_NJ];
+/* Places of the actuated joints in q, and their names, in the order of tau. */
+extern const size_t fivebar_offset_ACTUATED[FIVEBAR_OFFSET_NU];
+extern const char *const fivebar_offset_ACTUATOR_NAMES[FIVEBAR_OFFSET_NU];
 
 /* Prepare a model.  FIVEBAR_OFFSET_INVALID, and the model is all NaN: a parameter is not finite or beyond
    1e+12; a mass is negative; an izz is negative (other entries of inertias do not
@@ -161,24 +164,15 @@ int fivebar_offset_H(const fivebar_offset_model *model, const fivebar_offset_rea
 size_t fivebar_offset_H_batch(const fivebar_offset_model *model, size_t n, const
     fivebar_offset_real *X, fivebar_offset_real *H, int *status);
 
-/* Directions Hk of the constraint forces lambda. 23 mul, 12 add, 1 div, 1 sqrt, 0 trig. In: X
-   (NQ). Out: Hk (NV x NC). */
+/* Directions Hk of the constraint forces lambda (Eq. 36). 23 mul, 12 add, 1 div, 1 sqrt, 0 trig.
+   In: X (NQ). Out: Hk (NV x NC). */
 int fivebar_offset_Hk(const fivebar_offset_model *model, const fivebar_offset_real *X,
     fivebar_offset_real *Hk);
 size_t fivebar_offset_Hk_batch(const fivebar_offset_model *model, size_t n, const
     fivebar_offset_real *X, fivebar_offset_real *Hk, int *status);
 
-/* M, Z and H together, sharing the work. 205 mul, 143 add, 3 div, 2 sqrt, 0 trig. In: X (NQ), V
-   (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
-int fivebar_offset_dynamics(const fivebar_offset_model *model, const fivebar_offset_real *X, const
-    fivebar_offset_real *V, fivebar_offset_real *M, fivebar_offset_real *Z, fivebar_offset_real
-    *H);
-size_t fivebar_offset_dynamics_batch(const fivebar_offset_model *model, size_t n, const
-    fivebar_offset_real *X, const fivebar_offset_real *V, fivebar_offset_real *M,
-    fivebar_offset_real *Z, fivebar_offset_real *H, int *status);
-
-/* Residuals of the constraints [m, or 1 for angles]; zero where the loops close. 18 mul, 11 add,
-   1 div, 1 sqrt, 0 trig. In: X (NQ). Out: residual (NC). */
+/* Residuals of the constraints [m, or 1 for angles]; zero on closed loops (Eq. 37). 18 mul, 11
+   add, 1 div, 1 sqrt, 0 trig. In: X (NQ). Out: residual (NC). */
 int fivebar_offset_constraints(const fivebar_offset_model *model, const fivebar_offset_real *X,
     fivebar_offset_real *residual);
 size_t fivebar_offset_constraints_batch(const fivebar_offset_model *model, size_t n, const
@@ -191,8 +185,8 @@ int fivebar_offset_constraint_bias(const fivebar_offset_model *model, const five
 size_t fivebar_offset_constraint_bias_batch(const fivebar_offset_model *model, size_t n, const
     fivebar_offset_real *X, const fivebar_offset_real *V, fivebar_offset_real *bias, int *status);
 
-/* Displacements q of all joints, on the assembly branch of home. 46 mul, 25 add, 2 div, 2 sqrt, 3
-   trig. In: X (NQ). Out: q (NJ). */
+/* Displacements q of all joints. They are those of the assembly branch of home. 46 mul, 25 add, 2
+   div, 2 sqrt, 3 trig. In: X (NQ). Out: q (NJ). */
 int fivebar_offset_inverse_kinematics(const fivebar_offset_model *model, const fivebar_offset_real
     *X, fivebar_offset_real *q);
 size_t fivebar_offset_inverse_kinematics_batch(const fivebar_offset_model *model, size_t n, const
@@ -214,9 +208,18 @@ size_t fivebar_offset_joint_accelerations_batch(const fivebar_offset_model *mode
     fivebar_offset_real *X, const fivebar_offset_real *V, const fivebar_offset_real *A,
     fivebar_offset_real *accelerations, int *status);
 
-/* Actuator forces tau and multipliers lambda for the acceleration A, by Eq. 3. 169 mul, 107 add,
-   3 div, 2 sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV),
-   wrench (NW, or NULL). Out: tau (NU), lambda (NC). */
+/* M, Z and H together, sharing the work. 205 mul, 143 add, 3 div, 2 sqrt, 0 trig. In: X (NQ), V
+   (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
+int fivebar_offset_dynamics(const fivebar_offset_model *model, const fivebar_offset_real *X, const
+    fivebar_offset_real *V, fivebar_offset_real *M, fivebar_offset_real *Z, fivebar_offset_real
+    *H);
+size_t fivebar_offset_dynamics_batch(const fivebar_offset_model *model, size_t n, const
+    fivebar_offset_real *X, const fivebar_offset_real *V, fivebar_offset_real *M,
+    fivebar_offset_real *Z, fivebar_offset_real *H, int *status);
+
+/* Actuator forces tau for the acceleration A, by Eq. 3. 169 mul, 107 add, 3 div, 2 sqrt, 0 trig;
+   the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
+   Out: tau (NU), lambda (NC). */
 int fivebar_offset_inverse_dynamics(const fivebar_offset_model *model, const fivebar_offset_real
     *X, const fivebar_offset_real *V, const fivebar_offset_real *A, const fivebar_offset_real
     *wrench, fivebar_offset_real *tau, fivebar_offset_real *lambda);
@@ -235,8 +238,9 @@ size_t fivebar_offset_forward_dynamics_batch(const fivebar_offset_model *model, 
     fivebar_offset_real *X, const fivebar_offset_real *V, const fivebar_offset_real *tau, const
     fivebar_offset_real *wrench, fivebar_offset_real *A, fivebar_offset_real *lambda, int *status);
 
-/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
-   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
+/* A with the entries of passive extra coordinates that the others allow. It is A: there are no
+   passive extra coordinates, whose accelerations would follow. In: X (NQ), V (NV), A (NV), wrench
+   (NW, or NULL). Out: completed (NV). */
 int fivebar_offset_complete_acceleration(const fivebar_offset_model *model, const
     fivebar_offset_real *X, const fivebar_offset_real *V, const fivebar_offset_real *A, const
     fivebar_offset_real *wrench, fivebar_offset_real *completed);
@@ -244,9 +248,9 @@ size_t fivebar_offset_complete_acceleration_batch(const fivebar_offset_model *mo
     const fivebar_offset_real *X, const fivebar_offset_real *V, const fivebar_offset_real *A,
     const fivebar_offset_real *wrench, fivebar_offset_real *completed, int *status);
 
-/* Force of each leg on the platform at its platform joint, base axes. 143 mul, 80 add, 3 div, 2
-   sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
-   forces (2 x 3). */
+/* Force of each leg on the platform at its platform joint, base axes. The actuators give the
+   forces of inverse_dynamics. 143 mul, 80 add, 3 div, 2 sqrt, 0 trig; inverse dynamics apart. In:
+   X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (2 x 3). */
 int fivebar_offset_leg_reactions(const fivebar_offset_model *model, const fivebar_offset_real *X,
     const fivebar_offset_real *V, const fivebar_offset_real *A, const fivebar_offset_real *wrench,
     fivebar_offset_real *forces);
@@ -254,52 +258,105 @@ size_t fivebar_offset_leg_reactions_batch(const fivebar_offset_model *model, siz
     fivebar_offset_real *X, const fivebar_offset_real *V, const fivebar_offset_real *A, const
     fivebar_offset_real *wrench, fivebar_offset_real *forces, int *status);
 
-/* Kinetic and potential energy; the latter is zero at the base origin. In: X (NQ), V (NV). Out:
-   kinetic (1), potential (1). */
+/* Kinetic and potential energy [J]; the latter is zero at the base origin. In: X (NQ), V (NV).
+   Out: kinetic (1), potential (1). */
 int fivebar_offset_energy(const fivebar_offset_model *model, const fivebar_offset_real *X, const
     fivebar_offset_real *V, fivebar_offset_real *kinetic, fivebar_offset_real *potential);
 size_t fivebar_offset_energy_batch(const fivebar_offset_model *model, size_t n, const
     fivebar_offset_real *X, const fivebar_offset_real *V, fivebar_offset_real *kinetic,
     fivebar_offset_real *potential, int *status);
 
-/* X at which the driven joints stand at q_actuated, by Gauss-Newton from X0; extra coordinates
-   that the drives do not determine stay. In: q_actuated (NU), X0 (NQ). Out: X (NQ). */
-int fivebar_offset_forward_kinematics(const fivebar_offset_model *model, const fivebar_offset_real
-    *q_actuated, const fivebar_offset_real *X0, fivebar_offset_real *X);
-size_t fivebar_offset_forward_kinematics_batch(const fivebar_offset_model *model, size_t n, const
-    fivebar_offset_real *q_actuated, const fivebar_offset_real *X0, fivebar_offset_real *X, int
-    *status);
-
-/* Singular values of H in descending order, moment rows divided by the rms distance of the
-   platform points from their centroid; for every leg the least tested pivot as a fraction of its
-   scale. 83 mul, 46 add, 3 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
+/* How far a pose is from singularities: singular values of H, rows of moments divided by a
+   length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
+   distance of the platform points from their centroid, or where they coincide the rms size of the
+   legs. 83 mul, 46 add, 3 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
    (2), legs (2). */
 int fivebar_offset_condition(const fivebar_offset_model *model, const fivebar_offset_real *X,
     fivebar_offset_real *sigma, fivebar_offset_real *legs);
 size_t fivebar_offset_condition_batch(const fivebar_offset_model *model, size_t n, const
     fivebar_offset_real *X, fivebar_offset_real *sigma, fivebar_offset_real *legs, int *status);
 
-/* The same of [H Hk], which inverse dynamics solves. 83 mul, 46 add, 3 div, 5 sqrt, 0 trig; the
-   singular values apart. In: X (NQ). Out: sigma (3), legs (2). */
+/* The same with the singular values of [H Hk], which inverse dynamics solves. The length is the
+   rms distance of the platform points from their centroid, or where they coincide the rms size of
+   the legs. 83 mul, 46 add, 3 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   sigma (3), legs (2). */
 int fivebar_offset_condition_constrained(const fivebar_offset_model *model, const
     fivebar_offset_real *X, fivebar_offset_real *sigma, fivebar_offset_real *legs);
 size_t fivebar_offset_condition_constrained_batch(const fivebar_offset_model *model, size_t n,
     const fivebar_offset_real *X, fivebar_offset_real *sigma, fivebar_offset_real *legs, int
     *status);
 
-/* The nearest pose on which the constraints hold. In: X (NQ). Out: projected (NQ). */
+/* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
+   that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
+   X0 (NQ). Out: X (NQ). */
+int fivebar_offset_forward_kinematics(const fivebar_offset_model *model, const fivebar_offset_real
+    *q_actuated, const fivebar_offset_real *X0, fivebar_offset_real *X);
+size_t fivebar_offset_forward_kinematics_batch(const fivebar_offset_model *model, size_t n, const
+    fivebar_offset_real *q_actuated, const fivebar_offset_real *X0, fivebar_offset_real *X, int
+    *status);
+
+/* The nearest pose on which the constraints hold. By Gauss-Newton; impossible where none is
+   found. In: X (NQ). Out: projected (NQ). */
 int fivebar_offset_project(const fivebar_offset_model *model, const fivebar_offset_real *X,
     fivebar_offset_real *projected);
 size_t fivebar_offset_project_batch(const fivebar_offset_model *model, size_t n, const
     fivebar_offset_real *X, fivebar_offset_real *projected, int *status);
 
-/* base_R_platform; a quaternion need not be normalised. In: X (NQ). Out: R (2 x 2). */
+/* Power that friction takes, not negative; the rate of energy is power less this. In: X (NQ), V
+   (NV). Out: dissipation (1). */
+int fivebar_offset_dissipation(const fivebar_offset_model *model, const fivebar_offset_real *X,
+    const fivebar_offset_real *V, fivebar_offset_real *dissipation);
+size_t fivebar_offset_dissipation_batch(const fivebar_offset_model *model, size_t n, const
+    fivebar_offset_real *X, const fivebar_offset_real *V, fivebar_offset_real *dissipation, int
+    *status);
+
+/* Generalised momentum M V. 106 mul, 80 add, 3 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+   momentum (NV). */
+int fivebar_offset_momentum(const fivebar_offset_model *model, const fivebar_offset_real *X, const
+    fivebar_offset_real *V, fivebar_offset_real *momentum);
+size_t fivebar_offset_momentum_batch(const fivebar_offset_model *model, size_t n, const
+    fivebar_offset_real *X, const fivebar_offset_real *V, fivebar_offset_real *momentum, int
+    *status);
+
+/* Displacements of the actuated joints, in the order of tau. 46 mul, 25 add, 2 div, 2 sqrt, 3
+   trig. In: X (NQ). Out: q (NU). */
+int fivebar_offset_actuator_positions(const fivebar_offset_model *model, const fivebar_offset_real
+    *X, fivebar_offset_real *q);
+size_t fivebar_offset_actuator_positions_batch(const fivebar_offset_model *model, size_t n, const
+    fivebar_offset_real *X, fivebar_offset_real *q, int *status);
+
+/* Rates of the actuated joints, in the order of tau. 77 mul, 42 add, 3 div, 2 sqrt, 0 trig. In: X
+   (NQ), V (NV). Out: rates (NU). */
+int fivebar_offset_actuator_rates(const fivebar_offset_model *model, const fivebar_offset_real *X,
+    const fivebar_offset_real *V, fivebar_offset_real *rates);
+size_t fivebar_offset_actuator_rates_batch(const fivebar_offset_model *model, size_t n, const
+    fivebar_offset_real *X, const fivebar_offset_real *V, fivebar_offset_real *rates, int *status);
+
+/* Accelerations of the actuated joints, in the order of tau. 100 mul, 55 add, 3 div, 2 sqrt, 0
+   trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
+int fivebar_offset_actuator_accelerations(const fivebar_offset_model *model, const
+    fivebar_offset_real *X, const fivebar_offset_real *V, const fivebar_offset_real *A,
+    fivebar_offset_real *accelerations);
+size_t fivebar_offset_actuator_accelerations_batch(const fivebar_offset_model *model, size_t n,
+    const fivebar_offset_real *X, const fivebar_offset_real *V, const fivebar_offset_real *A,
+    fivebar_offset_real *accelerations, int *status);
+
+/* Power that actuators give to the mechanism: tau times their rates. In: X (NQ), V (NV), tau
+   (NU). Out: power (1). */
+int fivebar_offset_power(const fivebar_offset_model *model, const fivebar_offset_real *X, const
+    fivebar_offset_real *V, const fivebar_offset_real *tau, fivebar_offset_real *power);
+size_t fivebar_offset_power_batch(const fivebar_offset_model *model, size_t n, const
+    fivebar_offset_real *X, const fivebar_offset_real *V, const fivebar_offset_real *tau,
+    fivebar_offset_real *power, int *status);
+
+/* base_R_platform at X; a quaternion need not be normalised. In: X (NQ). Out: R (2 x 2). */
 int fivebar_offset_rotation(const fivebar_offset_real *X, fivebar_offset_real *R);
 size_t fivebar_offset_rotation_batch(size_t n, const fivebar_offset_real *X, fivebar_offset_real
     *R, int *status);
 
-/* X of the platform at origin t with rotation matrix R. INVALID where R has not orthonormal rows,
-   to 1e-06 (float: 1e-5), and determinant +1. In: t (2), R (2 x 2). Out: X (NQ). */
+/* X of the platform at origin t with rotation matrix R; extra coordinates zero. INVALID where R
+   has not orthonormal rows, to 1e-06 (float: 1e-5), and determinant +1. In: t (2), R (2 x 2).
+   Out: X (NQ). */
 int fivebar_offset_pose(const fivebar_offset_real *t, const fivebar_offset_real *R,
     fivebar_offset_real *X);
 size_t fivebar_offset_pose_batch(size_t n, const fivebar_offset_real *t, const fivebar_offset_real
@@ -310,6 +367,27 @@ int fivebar_offset_X_dot(const fivebar_offset_real *X, const fivebar_offset_real
     fivebar_offset_real *X_dot);
 size_t fivebar_offset_X_dot_batch(size_t n, const fivebar_offset_real *X, const
     fivebar_offset_real *V, fivebar_offset_real *X_dot, int *status);
+
+/* X moved by a displacement: (t + d, exp([phi]) R, y + dy) of step = (d, phi, dy). In: X (NQ),
+   step (NV). Out: X_moved (NQ). */
+int fivebar_offset_retract(const fivebar_offset_real *X, const fivebar_offset_real *step,
+    fivebar_offset_real *X_moved);
+size_t fivebar_offset_retract_batch(size_t n, const fivebar_offset_real *X, const
+    fivebar_offset_real *step, fivebar_offset_real *X_moved, int *status);
+
+/* The displacement from X0 to X1, the inverse of retract; rotations the shorter way. In: X0 (NQ),
+   X1 (NQ). Out: step (NV). */
+int fivebar_offset_difference(const fivebar_offset_real *X0, const fivebar_offset_real *X1,
+    fivebar_offset_real *step);
+size_t fivebar_offset_difference_batch(size_t n, const fivebar_offset_real *X0, const
+    fivebar_offset_real *X1, fivebar_offset_real *step, int *status);
+
+/* X0 moved by s times the displacement to X1: straight on, turning about one axis. In: X0 (NQ),
+   X1 (NQ), s (1). Out: X (NQ). */
+int fivebar_offset_interpolate(const fivebar_offset_real *X0, const fivebar_offset_real *X1, const
+    fivebar_offset_real *s, fivebar_offset_real *X);
+size_t fivebar_offset_interpolate_batch(size_t n, const fivebar_offset_real *X0, const
+    fivebar_offset_real *X1, const fivebar_offset_real *s, fivebar_offset_real *X, int *status);
 
 #ifdef __cplusplus
 }

@@ -103,6 +103,9 @@ typedef struct {
 extern const fivebar_prismatic_params fivebar_prismatic_default_params;
 extern const fivebar_prismatic_real fivebar_prismatic_HOME_X[FIVEBAR_PRISMATIC_NQ];
 extern const fivebar_prismatic_real fivebar_prismatic_HOME_Q[FIVEBAR_PRISMATIC_NJ];
+/* Places of the actuated joints in q, and their names, in the order of tau. */
+extern const size_t fivebar_prismatic_ACTUATED[FIVEBAR_PRISMATIC_NU];
+extern const char *const fivebar_prismatic_ACTUATOR_NAMES[FIVEBAR_PRISMATIC_NU];
 
 /* Prepare a model.  FIVEBAR_PRISMATIC_INVALID, and the model is all NaN: a parameter is not finite or beyond
    1e+12; a mass is negative; an izz is negative (other entries of inertias do not
@@ -132,17 +135,8 @@ int fivebar_prismatic_H(const fivebar_prismatic_model *model, const fivebar_pris
 size_t fivebar_prismatic_H_batch(const fivebar_prismatic_model *model, size_t n, const
     fivebar_prismatic_real *X, fivebar_prismatic_real *H, int *status);
 
-/* M, Z and H together, sharing the work. 100 mul, 62 add, 2 div, 2 sqrt, 0 trig. In: X (NQ), V
-   (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
-int fivebar_prismatic_dynamics(const fivebar_prismatic_model *model, const fivebar_prismatic_real
-    *X, const fivebar_prismatic_real *V, fivebar_prismatic_real *M, fivebar_prismatic_real *Z,
-    fivebar_prismatic_real *H);
-size_t fivebar_prismatic_dynamics_batch(const fivebar_prismatic_model *model, size_t n, const
-    fivebar_prismatic_real *X, const fivebar_prismatic_real *V, fivebar_prismatic_real *M,
-    fivebar_prismatic_real *Z, fivebar_prismatic_real *H, int *status);
-
-/* Displacements q of all joints, on the assembly branch of home. 18 mul, 14 add, 2 div, 2 sqrt, 2
-   trig. In: X (NQ). Out: q (NJ). */
+/* Displacements q of all joints. They are those of the assembly branch of home. 18 mul, 14 add, 2
+   div, 2 sqrt, 2 trig. In: X (NQ). Out: q (NJ). */
 int fivebar_prismatic_inverse_kinematics(const fivebar_prismatic_model *model, const
     fivebar_prismatic_real *X, fivebar_prismatic_real *q);
 size_t fivebar_prismatic_inverse_kinematics_batch(const fivebar_prismatic_model *model, size_t n,
@@ -165,6 +159,15 @@ size_t fivebar_prismatic_joint_accelerations_batch(const fivebar_prismatic_model
     const fivebar_prismatic_real *X, const fivebar_prismatic_real *V, const fivebar_prismatic_real
     *A, fivebar_prismatic_real *accelerations, int *status);
 
+/* M, Z and H together, sharing the work. 100 mul, 62 add, 2 div, 2 sqrt, 0 trig. In: X (NQ), V
+   (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
+int fivebar_prismatic_dynamics(const fivebar_prismatic_model *model, const fivebar_prismatic_real
+    *X, const fivebar_prismatic_real *V, fivebar_prismatic_real *M, fivebar_prismatic_real *Z,
+    fivebar_prismatic_real *H);
+size_t fivebar_prismatic_dynamics_batch(const fivebar_prismatic_model *model, size_t n, const
+    fivebar_prismatic_real *X, const fivebar_prismatic_real *V, fivebar_prismatic_real *M,
+    fivebar_prismatic_real *Z, fivebar_prismatic_real *H, int *status);
+
 /* Actuator forces tau for the acceleration A, by Eq. 3. 86 mul, 58 add, 2 div, 2 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU). */
@@ -185,8 +188,9 @@ size_t fivebar_prismatic_forward_dynamics_batch(const fivebar_prismatic_model *m
     const fivebar_prismatic_real *X, const fivebar_prismatic_real *V, const fivebar_prismatic_real
     *tau, const fivebar_prismatic_real *wrench, fivebar_prismatic_real *A, int *status);
 
-/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
-   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
+/* A with the entries of passive extra coordinates that the others allow. It is A: there are no
+   passive extra coordinates, whose accelerations would follow. In: X (NQ), V (NV), A (NV), wrench
+   (NW, or NULL). Out: completed (NV). */
 int fivebar_prismatic_complete_acceleration(const fivebar_prismatic_model *model, const
     fivebar_prismatic_real *X, const fivebar_prismatic_real *V, const fivebar_prismatic_real *A,
     const fivebar_prismatic_real *wrench, fivebar_prismatic_real *completed);
@@ -195,9 +199,9 @@ size_t fivebar_prismatic_complete_acceleration_batch(const fivebar_prismatic_mod
     fivebar_prismatic_real *A, const fivebar_prismatic_real *wrench, fivebar_prismatic_real
     *completed, int *status);
 
-/* Force of each leg on the platform at its platform joint, base axes. 88 mul, 54 add, 2 div, 2
-   sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
-   forces (2 x 3). */
+/* Force of each leg on the platform at its platform joint, base axes. The actuators give the
+   forces of inverse_dynamics. 88 mul, 54 add, 2 div, 2 sqrt, 0 trig; inverse dynamics apart. In:
+   X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (2 x 3). */
 int fivebar_prismatic_leg_reactions(const fivebar_prismatic_model *model, const
     fivebar_prismatic_real *X, const fivebar_prismatic_real *V, const fivebar_prismatic_real *A,
     const fivebar_prismatic_real *wrench, fivebar_prismatic_real *forces);
@@ -205,8 +209,8 @@ size_t fivebar_prismatic_leg_reactions_batch(const fivebar_prismatic_model *mode
     fivebar_prismatic_real *X, const fivebar_prismatic_real *V, const fivebar_prismatic_real *A,
     const fivebar_prismatic_real *wrench, fivebar_prismatic_real *forces, int *status);
 
-/* Kinetic and potential energy; the latter is zero at the base origin. In: X (NQ), V (NV). Out:
-   kinetic (1), potential (1). */
+/* Kinetic and potential energy [J]; the latter is zero at the base origin. In: X (NQ), V (NV).
+   Out: kinetic (1), potential (1). */
 int fivebar_prismatic_energy(const fivebar_prismatic_model *model, const fivebar_prismatic_real
     *X, const fivebar_prismatic_real *V, fivebar_prismatic_real *kinetic, fivebar_prismatic_real
     *potential);
@@ -214,8 +218,20 @@ size_t fivebar_prismatic_energy_batch(const fivebar_prismatic_model *model, size
     fivebar_prismatic_real *X, const fivebar_prismatic_real *V, fivebar_prismatic_real *kinetic,
     fivebar_prismatic_real *potential, int *status);
 
-/* X at which the driven joints stand at q_actuated, by Gauss-Newton from X0; extra coordinates
-   that the drives do not determine stay. In: q_actuated (NU), X0 (NQ). Out: X (NQ). */
+/* How far a pose is from singularities: singular values of H, rows of moments divided by a
+   length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
+   distance of the platform points from their centroid, or where they coincide the rms size of the
+   legs. 27 mul, 24 add, 2 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
+   (2), legs (2). */
+int fivebar_prismatic_condition(const fivebar_prismatic_model *model, const fivebar_prismatic_real
+    *X, fivebar_prismatic_real *sigma, fivebar_prismatic_real *legs);
+size_t fivebar_prismatic_condition_batch(const fivebar_prismatic_model *model, size_t n, const
+    fivebar_prismatic_real *X, fivebar_prismatic_real *sigma, fivebar_prismatic_real *legs, int
+    *status);
+
+/* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
+   that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
+   X0 (NQ). Out: X (NQ). */
 int fivebar_prismatic_forward_kinematics(const fivebar_prismatic_model *model, const
     fivebar_prismatic_real *q_actuated, const fivebar_prismatic_real *X0, fivebar_prismatic_real
     *X);
@@ -223,14 +239,76 @@ size_t fivebar_prismatic_forward_kinematics_batch(const fivebar_prismatic_model 
     const fivebar_prismatic_real *q_actuated, const fivebar_prismatic_real *X0,
     fivebar_prismatic_real *X, int *status);
 
-/* Singular values of H in descending order, moment rows divided by the rms distance of the
-   platform points from their centroid; for every leg the least tested pivot as a fraction of its
-   scale. 27 mul, 24 add, 2 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
-   (2), legs (2). */
-int fivebar_prismatic_condition(const fivebar_prismatic_model *model, const fivebar_prismatic_real
-    *X, fivebar_prismatic_real *sigma, fivebar_prismatic_real *legs);
-size_t fivebar_prismatic_condition_batch(const fivebar_prismatic_model *model, size_t n, const
-    fivebar_prismatic_real *X, fivebar_prismatic_real *sigma, fivebar_prismatic_real *legs, int
+/* Power that friction takes, not negative; the rate of energy is power less this. In: X (NQ), V
+   (NV). Out: dissipation (1). */
+int fivebar_prismatic_dissipation(const fivebar_prismatic_model *model, const
+    fivebar_prismatic_real *X, const fivebar_prismatic_real *V, fivebar_prismatic_real
+    *dissipation);
+size_t fivebar_prismatic_dissipation_batch(const fivebar_prismatic_model *model, size_t n, const
+    fivebar_prismatic_real *X, const fivebar_prismatic_real *V, fivebar_prismatic_real
+    *dissipation, int *status);
+
+/* Generalised momentum M V. 48 mul, 32 add, 2 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+   momentum (NV). */
+int fivebar_prismatic_momentum(const fivebar_prismatic_model *model, const fivebar_prismatic_real
+    *X, const fivebar_prismatic_real *V, fivebar_prismatic_real *momentum);
+size_t fivebar_prismatic_momentum_batch(const fivebar_prismatic_model *model, size_t n, const
+    fivebar_prismatic_real *X, const fivebar_prismatic_real *V, fivebar_prismatic_real *momentum,
+    int *status);
+
+/* Displacements of the actuated joints, in the order of tau. 18 mul, 14 add, 2 div, 2 sqrt, 2
+   trig. In: X (NQ). Out: q (NU). */
+int fivebar_prismatic_actuator_positions(const fivebar_prismatic_model *model, const
+    fivebar_prismatic_real *X, fivebar_prismatic_real *q);
+size_t fivebar_prismatic_actuator_positions_batch(const fivebar_prismatic_model *model, size_t n,
+    const fivebar_prismatic_real *X, fivebar_prismatic_real *q, int *status);
+
+/* Rates of the actuated joints, in the order of tau. 28 mul, 18 add, 2 div, 2 sqrt, 0 trig. In: X
+   (NQ), V (NV). Out: rates (NU). */
+int fivebar_prismatic_actuator_rates(const fivebar_prismatic_model *model, const
+    fivebar_prismatic_real *X, const fivebar_prismatic_real *V, fivebar_prismatic_real *rates);
+size_t fivebar_prismatic_actuator_rates_batch(const fivebar_prismatic_model *model, size_t n,
+    const fivebar_prismatic_real *X, const fivebar_prismatic_real *V, fivebar_prismatic_real
+    *rates, int *status);
+
+/* Accelerations of the actuated joints, in the order of tau. 46 mul, 26 add, 2 div, 2 sqrt, 0
+   trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
+int fivebar_prismatic_actuator_accelerations(const fivebar_prismatic_model *model, const
+    fivebar_prismatic_real *X, const fivebar_prismatic_real *V, const fivebar_prismatic_real *A,
+    fivebar_prismatic_real *accelerations);
+size_t fivebar_prismatic_actuator_accelerations_batch(const fivebar_prismatic_model *model, size_t
+    n, const fivebar_prismatic_real *X, const fivebar_prismatic_real *V, const
+    fivebar_prismatic_real *A, fivebar_prismatic_real *accelerations, int *status);
+
+/* Power that actuators give to the mechanism: tau times their rates. In: X (NQ), V (NV), tau
+   (NU). Out: power (1). */
+int fivebar_prismatic_power(const fivebar_prismatic_model *model, const fivebar_prismatic_real *X,
+    const fivebar_prismatic_real *V, const fivebar_prismatic_real *tau, fivebar_prismatic_real
+    *power);
+size_t fivebar_prismatic_power_batch(const fivebar_prismatic_model *model, size_t n, const
+    fivebar_prismatic_real *X, const fivebar_prismatic_real *V, const fivebar_prismatic_real *tau,
+    fivebar_prismatic_real *power, int *status);
+
+/* X moved by a displacement: (t + d, exp([phi]) R, y + dy) of step = (d, phi, dy). In: X (NQ),
+   step (NV). Out: X_moved (NQ). */
+int fivebar_prismatic_retract(const fivebar_prismatic_real *X, const fivebar_prismatic_real *step,
+    fivebar_prismatic_real *X_moved);
+size_t fivebar_prismatic_retract_batch(size_t n, const fivebar_prismatic_real *X, const
+    fivebar_prismatic_real *step, fivebar_prismatic_real *X_moved, int *status);
+
+/* The displacement from X0 to X1, the inverse of retract; rotations the shorter way. In: X0 (NQ),
+   X1 (NQ). Out: step (NV). */
+int fivebar_prismatic_difference(const fivebar_prismatic_real *X0, const fivebar_prismatic_real
+    *X1, fivebar_prismatic_real *step);
+size_t fivebar_prismatic_difference_batch(size_t n, const fivebar_prismatic_real *X0, const
+    fivebar_prismatic_real *X1, fivebar_prismatic_real *step, int *status);
+
+/* X0 moved by s times the displacement to X1: straight on, turning about one axis. In: X0 (NQ),
+   X1 (NQ), s (1). Out: X (NQ). */
+int fivebar_prismatic_interpolate(const fivebar_prismatic_real *X0, const fivebar_prismatic_real
+    *X1, const fivebar_prismatic_real *s, fivebar_prismatic_real *X);
+size_t fivebar_prismatic_interpolate_batch(size_t n, const fivebar_prismatic_real *X0, const
+    fivebar_prismatic_real *X1, const fivebar_prismatic_real *s, fivebar_prismatic_real *X, int
     *status);
 
 #ifdef __cplusplus

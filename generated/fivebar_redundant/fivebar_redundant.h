@@ -144,6 +144,9 @@ typedef struct {
 extern const fivebar_redundant_params fivebar_redundant_default_params;
 extern const fivebar_redundant_real fivebar_redundant_HOME_X[FIVEBAR_REDUNDANT_NQ];
 extern const fivebar_redundant_real fivebar_redundant_HOME_Q[FIVEBAR_REDUNDANT_NJ];
+/* Places of the actuated joints in q, and their names, in the order of tau. */
+extern const size_t fivebar_redundant_ACTUATED[FIVEBAR_REDUNDANT_NU];
+extern const char *const fivebar_redundant_ACTUATOR_NAMES[FIVEBAR_REDUNDANT_NU];
 
 /* Prepare a model.  FIVEBAR_REDUNDANT_INVALID, and the model is all NaN: a parameter is not finite or beyond
    1e+12; a mass is negative; an izz is negative (other entries of inertias do not
@@ -173,17 +176,8 @@ int fivebar_redundant_H(const fivebar_redundant_model *model, const fivebar_redu
 size_t fivebar_redundant_H_batch(const fivebar_redundant_model *model, size_t n, const
     fivebar_redundant_real *X, fivebar_redundant_real *H, int *status);
 
-/* M, Z and H together, sharing the work. 216 mul, 139 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V
-   (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
-int fivebar_redundant_dynamics(const fivebar_redundant_model *model, const fivebar_redundant_real
-    *X, const fivebar_redundant_real *V, fivebar_redundant_real *M, fivebar_redundant_real *Z,
-    fivebar_redundant_real *H);
-size_t fivebar_redundant_dynamics_batch(const fivebar_redundant_model *model, size_t n, const
-    fivebar_redundant_real *X, const fivebar_redundant_real *V, fivebar_redundant_real *M,
-    fivebar_redundant_real *Z, fivebar_redundant_real *H, int *status);
-
-/* Displacements q of all joints, on the assembly branch of home. 54 mul, 28 add, 2 div, 2 sqrt, 4
-   trig. In: X (NQ). Out: q (NJ). */
+/* Displacements q of all joints. They are those of the assembly branch of home. 54 mul, 28 add, 2
+   div, 2 sqrt, 4 trig. In: X (NQ). Out: q (NJ). */
 int fivebar_redundant_inverse_kinematics(const fivebar_redundant_model *model, const
     fivebar_redundant_real *X, fivebar_redundant_real *q);
 size_t fivebar_redundant_inverse_kinematics_batch(const fivebar_redundant_model *model, size_t n,
@@ -206,9 +200,18 @@ size_t fivebar_redundant_joint_accelerations_batch(const fivebar_redundant_model
     const fivebar_redundant_real *X, const fivebar_redundant_real *V, const fivebar_redundant_real
     *A, fivebar_redundant_real *accelerations, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3, of least norm. 186 mul, 112 add, 4 div, 2
-   sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench
-   (NW, or NULL). Out: tau (NU). */
+/* M, Z and H together, sharing the work. 216 mul, 139 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V
+   (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
+int fivebar_redundant_dynamics(const fivebar_redundant_model *model, const fivebar_redundant_real
+    *X, const fivebar_redundant_real *V, fivebar_redundant_real *M, fivebar_redundant_real *Z,
+    fivebar_redundant_real *H);
+size_t fivebar_redundant_dynamics_batch(const fivebar_redundant_model *model, size_t n, const
+    fivebar_redundant_real *X, const fivebar_redundant_real *V, fivebar_redundant_real *M,
+    fivebar_redundant_real *Z, fivebar_redundant_real *H, int *status);
+
+/* Actuator forces tau for the acceleration A, by Eq. 3. tau has the least norm. 186 mul, 112 add,
+   4 div, 2 sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV),
+   wrench (NW, or NULL). Out: tau (NU). */
 int fivebar_redundant_inverse_dynamics(const fivebar_redundant_model *model, const
     fivebar_redundant_real *X, const fivebar_redundant_real *V, const fivebar_redundant_real *A,
     const fivebar_redundant_real *wrench, fivebar_redundant_real *tau);
@@ -216,9 +219,9 @@ size_t fivebar_redundant_inverse_dynamics_batch(const fivebar_redundant_model *m
     const fivebar_redundant_real *X, const fivebar_redundant_real *V, const fivebar_redundant_real
     *A, const fivebar_redundant_real *wrench, fivebar_redundant_real *tau, int *status);
 
-/* Actuator forces tau of least sum of weights tau^2. 186 mul, 112 add, 4 div, 2 sqrt, 0 trig; the
-   solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL),
-   weights (NU, positive). Out: tau (NU). */
+/* Actuator forces tau for the acceleration A, by Eq. 3. tau has the least sum of weights tau^2.
+   186 mul, 112 add, 4 div, 2 sqrt, 0 trig; the solution of the linear equations apart. In: X
+   (NQ), V (NV), A (NV), wrench (NW, or NULL), weights (NU, positive). Out: tau (NU). */
 int fivebar_redundant_inverse_dynamics_weighted(const fivebar_redundant_model *model, const
     fivebar_redundant_real *X, const fivebar_redundant_real *V, const fivebar_redundant_real *A,
     const fivebar_redundant_real *wrench, const fivebar_redundant_real *weights,
@@ -238,14 +241,9 @@ size_t fivebar_redundant_forward_dynamics_batch(const fivebar_redundant_model *m
     const fivebar_redundant_real *X, const fivebar_redundant_real *V, const fivebar_redundant_real
     *tau, const fivebar_redundant_real *wrench, fivebar_redundant_real *A, int *status);
 
-/* Orthonormal basis of the tau with H tau = 0. In: X (NQ). Out: basis (NU x 1). */
-int fivebar_redundant_null_space(const fivebar_redundant_model *model, const
-    fivebar_redundant_real *X, fivebar_redundant_real *basis);
-size_t fivebar_redundant_null_space_batch(const fivebar_redundant_model *model, size_t n, const
-    fivebar_redundant_real *X, fivebar_redundant_real *basis, int *status);
-
-/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
-   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
+/* A with the entries of passive extra coordinates that the others allow. It is A: there are no
+   passive extra coordinates, whose accelerations would follow. In: X (NQ), V (NV), A (NV), wrench
+   (NW, or NULL). Out: completed (NV). */
 int fivebar_redundant_complete_acceleration(const fivebar_redundant_model *model, const
     fivebar_redundant_real *X, const fivebar_redundant_real *V, const fivebar_redundant_real *A,
     const fivebar_redundant_real *wrench, fivebar_redundant_real *completed);
@@ -254,9 +252,9 @@ size_t fivebar_redundant_complete_acceleration_batch(const fivebar_redundant_mod
     fivebar_redundant_real *A, const fivebar_redundant_real *wrench, fivebar_redundant_real
     *completed, int *status);
 
-/* Force of each leg on the platform at its platform joint, base axes. 188 mul, 106 add, 4 div, 2
-   sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
-   forces (2 x 3). */
+/* Force of each leg on the platform at its platform joint, base axes. The actuators give the
+   forces of inverse_dynamics. 188 mul, 106 add, 4 div, 2 sqrt, 0 trig; inverse dynamics apart.
+   In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (2 x 3). */
 int fivebar_redundant_leg_reactions(const fivebar_redundant_model *model, const
     fivebar_redundant_real *X, const fivebar_redundant_real *V, const fivebar_redundant_real *A,
     const fivebar_redundant_real *wrench, fivebar_redundant_real *forces);
@@ -264,8 +262,8 @@ size_t fivebar_redundant_leg_reactions_batch(const fivebar_redundant_model *mode
     fivebar_redundant_real *X, const fivebar_redundant_real *V, const fivebar_redundant_real *A,
     const fivebar_redundant_real *wrench, fivebar_redundant_real *forces, int *status);
 
-/* Kinetic and potential energy; the latter is zero at the base origin. In: X (NQ), V (NV). Out:
-   kinetic (1), potential (1). */
+/* Kinetic and potential energy [J]; the latter is zero at the base origin. In: X (NQ), V (NV).
+   Out: kinetic (1), potential (1). */
 int fivebar_redundant_energy(const fivebar_redundant_model *model, const fivebar_redundant_real
     *X, const fivebar_redundant_real *V, fivebar_redundant_real *kinetic, fivebar_redundant_real
     *potential);
@@ -273,8 +271,26 @@ size_t fivebar_redundant_energy_batch(const fivebar_redundant_model *model, size
     fivebar_redundant_real *X, const fivebar_redundant_real *V, fivebar_redundant_real *kinetic,
     fivebar_redundant_real *potential, int *status);
 
-/* X at which the driven joints stand at q_actuated, by Gauss-Newton from X0; extra coordinates
-   that the drives do not determine stay. In: q_actuated (NU), X0 (NQ). Out: X (NQ). */
+/* Orthonormal basis of the tau with H tau = 0. In: X (NQ). Out: basis (NU x 1). */
+int fivebar_redundant_null_space(const fivebar_redundant_model *model, const
+    fivebar_redundant_real *X, fivebar_redundant_real *basis);
+size_t fivebar_redundant_null_space_batch(const fivebar_redundant_model *model, size_t n, const
+    fivebar_redundant_real *X, fivebar_redundant_real *basis, int *status);
+
+/* How far a pose is from singularities: singular values of H, rows of moments divided by a
+   length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
+   distance of the platform points from their centroid, or where they coincide the rms size of the
+   legs. 100 mul, 54 add, 4 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
+   (2), legs (2). */
+int fivebar_redundant_condition(const fivebar_redundant_model *model, const fivebar_redundant_real
+    *X, fivebar_redundant_real *sigma, fivebar_redundant_real *legs);
+size_t fivebar_redundant_condition_batch(const fivebar_redundant_model *model, size_t n, const
+    fivebar_redundant_real *X, fivebar_redundant_real *sigma, fivebar_redundant_real *legs, int
+    *status);
+
+/* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
+   that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
+   X0 (NQ). Out: X (NQ). */
 int fivebar_redundant_forward_kinematics(const fivebar_redundant_model *model, const
     fivebar_redundant_real *q_actuated, const fivebar_redundant_real *X0, fivebar_redundant_real
     *X);
@@ -282,14 +298,76 @@ size_t fivebar_redundant_forward_kinematics_batch(const fivebar_redundant_model 
     const fivebar_redundant_real *q_actuated, const fivebar_redundant_real *X0,
     fivebar_redundant_real *X, int *status);
 
-/* Singular values of H in descending order, moment rows divided by the rms distance of the
-   platform points from their centroid; for every leg the least tested pivot as a fraction of its
-   scale. 100 mul, 54 add, 4 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
-   sigma (2), legs (2). */
-int fivebar_redundant_condition(const fivebar_redundant_model *model, const fivebar_redundant_real
-    *X, fivebar_redundant_real *sigma, fivebar_redundant_real *legs);
-size_t fivebar_redundant_condition_batch(const fivebar_redundant_model *model, size_t n, const
-    fivebar_redundant_real *X, fivebar_redundant_real *sigma, fivebar_redundant_real *legs, int
+/* Power that friction takes, not negative; the rate of energy is power less this. In: X (NQ), V
+   (NV). Out: dissipation (1). */
+int fivebar_redundant_dissipation(const fivebar_redundant_model *model, const
+    fivebar_redundant_real *X, const fivebar_redundant_real *V, fivebar_redundant_real
+    *dissipation);
+size_t fivebar_redundant_dissipation_batch(const fivebar_redundant_model *model, size_t n, const
+    fivebar_redundant_real *X, const fivebar_redundant_real *V, fivebar_redundant_real
+    *dissipation, int *status);
+
+/* Generalised momentum M V. 124 mul, 83 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+   momentum (NV). */
+int fivebar_redundant_momentum(const fivebar_redundant_model *model, const fivebar_redundant_real
+    *X, const fivebar_redundant_real *V, fivebar_redundant_real *momentum);
+size_t fivebar_redundant_momentum_batch(const fivebar_redundant_model *model, size_t n, const
+    fivebar_redundant_real *X, const fivebar_redundant_real *V, fivebar_redundant_real *momentum,
+    int *status);
+
+/* Displacements of the actuated joints, in the order of tau. 54 mul, 28 add, 2 div, 2 sqrt, 4
+   trig. In: X (NQ). Out: q (NU). */
+int fivebar_redundant_actuator_positions(const fivebar_redundant_model *model, const
+    fivebar_redundant_real *X, fivebar_redundant_real *q);
+size_t fivebar_redundant_actuator_positions_batch(const fivebar_redundant_model *model, size_t n,
+    const fivebar_redundant_real *X, fivebar_redundant_real *q, int *status);
+
+/* Rates of the actuated joints, in the order of tau. 94 mul, 48 add, 4 div, 2 sqrt, 0 trig. In: X
+   (NQ), V (NV). Out: rates (NU). */
+int fivebar_redundant_actuator_rates(const fivebar_redundant_model *model, const
+    fivebar_redundant_real *X, const fivebar_redundant_real *V, fivebar_redundant_real *rates);
+size_t fivebar_redundant_actuator_rates_batch(const fivebar_redundant_model *model, size_t n,
+    const fivebar_redundant_real *X, const fivebar_redundant_real *V, fivebar_redundant_real
+    *rates, int *status);
+
+/* Accelerations of the actuated joints, in the order of tau. 124 mul, 62 add, 4 div, 2 sqrt, 0
+   trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
+int fivebar_redundant_actuator_accelerations(const fivebar_redundant_model *model, const
+    fivebar_redundant_real *X, const fivebar_redundant_real *V, const fivebar_redundant_real *A,
+    fivebar_redundant_real *accelerations);
+size_t fivebar_redundant_actuator_accelerations_batch(const fivebar_redundant_model *model, size_t
+    n, const fivebar_redundant_real *X, const fivebar_redundant_real *V, const
+    fivebar_redundant_real *A, fivebar_redundant_real *accelerations, int *status);
+
+/* Power that actuators give to the mechanism: tau times their rates. In: X (NQ), V (NV), tau
+   (NU). Out: power (1). */
+int fivebar_redundant_power(const fivebar_redundant_model *model, const fivebar_redundant_real *X,
+    const fivebar_redundant_real *V, const fivebar_redundant_real *tau, fivebar_redundant_real
+    *power);
+size_t fivebar_redundant_power_batch(const fivebar_redundant_model *model, size_t n, const
+    fivebar_redundant_real *X, const fivebar_redundant_real *V, const fivebar_redundant_real *tau,
+    fivebar_redundant_real *power, int *status);
+
+/* X moved by a displacement: (t + d, exp([phi]) R, y + dy) of step = (d, phi, dy). In: X (NQ),
+   step (NV). Out: X_moved (NQ). */
+int fivebar_redundant_retract(const fivebar_redundant_real *X, const fivebar_redundant_real *step,
+    fivebar_redundant_real *X_moved);
+size_t fivebar_redundant_retract_batch(size_t n, const fivebar_redundant_real *X, const
+    fivebar_redundant_real *step, fivebar_redundant_real *X_moved, int *status);
+
+/* The displacement from X0 to X1, the inverse of retract; rotations the shorter way. In: X0 (NQ),
+   X1 (NQ). Out: step (NV). */
+int fivebar_redundant_difference(const fivebar_redundant_real *X0, const fivebar_redundant_real
+    *X1, fivebar_redundant_real *step);
+size_t fivebar_redundant_difference_batch(size_t n, const fivebar_redundant_real *X0, const
+    fivebar_redundant_real *X1, fivebar_redundant_real *step, int *status);
+
+/* X0 moved by s times the displacement to X1: straight on, turning about one axis. In: X0 (NQ),
+   X1 (NQ), s (1). Out: X (NQ). */
+int fivebar_redundant_interpolate(const fivebar_redundant_real *X0, const fivebar_redundant_real
+    *X1, const fivebar_redundant_real *s, fivebar_redundant_real *X);
+size_t fivebar_redundant_interpolate_batch(size_t n, const fivebar_redundant_real *X0, const
+    fivebar_redundant_real *X1, const fivebar_redundant_real *s, fivebar_redundant_real *X, int
     *status);
 
 #ifdef __cplusplus

@@ -110,6 +110,9 @@ typedef struct {
 extern const fivebar_revolute_params fivebar_revolute_default_params;
 extern const fivebar_revolute_real fivebar_revolute_HOME_X[FIVEBAR_REVOLUTE_NQ];
 extern const fivebar_revolute_real fivebar_revolute_HOME_Q[FIVEBAR_REVOLUTE_NJ];
+/* Places of the actuated joints in q, and their names, in the order of tau. */
+extern const size_t fivebar_revolute_ACTUATED[FIVEBAR_REVOLUTE_NU];
+extern const char *const fivebar_revolute_ACTUATOR_NAMES[FIVEBAR_REVOLUTE_NU];
 
 /* Prepare a model.  FIVEBAR_REVOLUTE_INVALID, and the model is all NaN: a parameter is not finite or beyond
    1e+12; a mass is negative; an izz is negative (other entries of inertias do not
@@ -139,17 +142,8 @@ int fivebar_revolute_H(const fivebar_revolute_model *model, const fivebar_revolu
 size_t fivebar_revolute_H_batch(const fivebar_revolute_model *model, size_t n, const
     fivebar_revolute_real *X, fivebar_revolute_real *H, int *status);
 
-/* M, Z and H together, sharing the work. 212 mul, 132 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V
-   (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
-int fivebar_revolute_dynamics(const fivebar_revolute_model *model, const fivebar_revolute_real *X,
-    const fivebar_revolute_real *V, fivebar_revolute_real *M, fivebar_revolute_real *Z,
-    fivebar_revolute_real *H);
-size_t fivebar_revolute_dynamics_batch(const fivebar_revolute_model *model, size_t n, const
-    fivebar_revolute_real *X, const fivebar_revolute_real *V, fivebar_revolute_real *M,
-    fivebar_revolute_real *Z, fivebar_revolute_real *H, int *status);
-
-/* Displacements q of all joints, on the assembly branch of home. 54 mul, 28 add, 2 div, 2 sqrt, 4
-   trig. In: X (NQ). Out: q (NJ). */
+/* Displacements q of all joints. They are those of the assembly branch of home. 54 mul, 28 add, 2
+   div, 2 sqrt, 4 trig. In: X (NQ). Out: q (NJ). */
 int fivebar_revolute_inverse_kinematics(const fivebar_revolute_model *model, const
     fivebar_revolute_real *X, fivebar_revolute_real *q);
 size_t fivebar_revolute_inverse_kinematics_batch(const fivebar_revolute_model *model, size_t n,
@@ -172,6 +166,15 @@ size_t fivebar_revolute_joint_accelerations_batch(const fivebar_revolute_model *
     const fivebar_revolute_real *X, const fivebar_revolute_real *V, const fivebar_revolute_real
     *A, fivebar_revolute_real *accelerations, int *status);
 
+/* M, Z and H together, sharing the work. 212 mul, 132 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V
+   (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
+int fivebar_revolute_dynamics(const fivebar_revolute_model *model, const fivebar_revolute_real *X,
+    const fivebar_revolute_real *V, fivebar_revolute_real *M, fivebar_revolute_real *Z,
+    fivebar_revolute_real *H);
+size_t fivebar_revolute_dynamics_batch(const fivebar_revolute_model *model, size_t n, const
+    fivebar_revolute_real *X, const fivebar_revolute_real *V, fivebar_revolute_real *M,
+    fivebar_revolute_real *Z, fivebar_revolute_real *H, int *status);
+
 /* Actuator forces tau for the acceleration A, by Eq. 3. 180 mul, 108 add, 4 div, 2 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU). */
@@ -192,8 +195,9 @@ size_t fivebar_revolute_forward_dynamics_batch(const fivebar_revolute_model *mod
     const fivebar_revolute_real *X, const fivebar_revolute_real *V, const fivebar_revolute_real
     *tau, const fivebar_revolute_real *wrench, fivebar_revolute_real *A, int *status);
 
-/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
-   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
+/* A with the entries of passive extra coordinates that the others allow. It is A: there are no
+   passive extra coordinates, whose accelerations would follow. In: X (NQ), V (NV), A (NV), wrench
+   (NW, or NULL). Out: completed (NV). */
 int fivebar_revolute_complete_acceleration(const fivebar_revolute_model *model, const
     fivebar_revolute_real *X, const fivebar_revolute_real *V, const fivebar_revolute_real *A,
     const fivebar_revolute_real *wrench, fivebar_revolute_real *completed);
@@ -201,9 +205,9 @@ size_t fivebar_revolute_complete_acceleration_batch(const fivebar_revolute_model
     const fivebar_revolute_real *X, const fivebar_revolute_real *V, const fivebar_revolute_real
     *A, const fivebar_revolute_real *wrench, fivebar_revolute_real *completed, int *status);
 
-/* Force of each leg on the platform at its platform joint, base axes. 182 mul, 104 add, 4 div, 2
-   sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
-   forces (2 x 3). */
+/* Force of each leg on the platform at its platform joint, base axes. The actuators give the
+   forces of inverse_dynamics. 182 mul, 104 add, 4 div, 2 sqrt, 0 trig; inverse dynamics apart.
+   In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (2 x 3). */
 int fivebar_revolute_leg_reactions(const fivebar_revolute_model *model, const
     fivebar_revolute_real *X, const fivebar_revolute_real *V, const fivebar_revolute_real *A,
     const fivebar_revolute_real *wrench, fivebar_revolute_real *forces);
@@ -211,8 +215,8 @@ size_t fivebar_revolute_leg_reactions_batch(const fivebar_revolute_model *model,
     fivebar_revolute_real *X, const fivebar_revolute_real *V, const fivebar_revolute_real *A,
     const fivebar_revolute_real *wrench, fivebar_revolute_real *forces, int *status);
 
-/* Kinetic and potential energy; the latter is zero at the base origin. In: X (NQ), V (NV). Out:
-   kinetic (1), potential (1). */
+/* Kinetic and potential energy [J]; the latter is zero at the base origin. In: X (NQ), V (NV).
+   Out: kinetic (1), potential (1). */
 int fivebar_revolute_energy(const fivebar_revolute_model *model, const fivebar_revolute_real *X,
     const fivebar_revolute_real *V, fivebar_revolute_real *kinetic, fivebar_revolute_real
     *potential);
@@ -220,22 +224,95 @@ size_t fivebar_revolute_energy_batch(const fivebar_revolute_model *model, size_t
     fivebar_revolute_real *X, const fivebar_revolute_real *V, fivebar_revolute_real *kinetic,
     fivebar_revolute_real *potential, int *status);
 
-/* X at which the driven joints stand at q_actuated, by Gauss-Newton from X0; extra coordinates
-   that the drives do not determine stay. In: q_actuated (NU), X0 (NQ). Out: X (NQ). */
+/* How far a pose is from singularities: singular values of H, rows of moments divided by a
+   length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
+   distance of the platform points from their centroid, or where they coincide the rms size of the
+   legs. 91 mul, 50 add, 4 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
+   (2), legs (2). */
+int fivebar_revolute_condition(const fivebar_revolute_model *model, const fivebar_revolute_real
+    *X, fivebar_revolute_real *sigma, fivebar_revolute_real *legs);
+size_t fivebar_revolute_condition_batch(const fivebar_revolute_model *model, size_t n, const
+    fivebar_revolute_real *X, fivebar_revolute_real *sigma, fivebar_revolute_real *legs, int
+    *status);
+
+/* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
+   that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
+   X0 (NQ). Out: X (NQ). */
 int fivebar_revolute_forward_kinematics(const fivebar_revolute_model *model, const
     fivebar_revolute_real *q_actuated, const fivebar_revolute_real *X0, fivebar_revolute_real *X);
 size_t fivebar_revolute_forward_kinematics_batch(const fivebar_revolute_model *model, size_t n,
     const fivebar_revolute_real *q_actuated, const fivebar_revolute_real *X0,
     fivebar_revolute_real *X, int *status);
 
-/* Singular values of H in descending order, moment rows divided by the rms distance of the
-   platform points from their centroid; for every leg the least tested pivot as a fraction of its
-   scale. 91 mul, 50 add, 4 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
-   (2), legs (2). */
-int fivebar_revolute_condition(const fivebar_revolute_model *model, const fivebar_revolute_real
-    *X, fivebar_revolute_real *sigma, fivebar_revolute_real *legs);
-size_t fivebar_revolute_condition_batch(const fivebar_revolute_model *model, size_t n, const
-    fivebar_revolute_real *X, fivebar_revolute_real *sigma, fivebar_revolute_real *legs, int
+/* Power that friction takes, not negative; the rate of energy is power less this. In: X (NQ), V
+   (NV). Out: dissipation (1). */
+int fivebar_revolute_dissipation(const fivebar_revolute_model *model, const fivebar_revolute_real
+    *X, const fivebar_revolute_real *V, fivebar_revolute_real *dissipation);
+size_t fivebar_revolute_dissipation_batch(const fivebar_revolute_model *model, size_t n, const
+    fivebar_revolute_real *X, const fivebar_revolute_real *V, fivebar_revolute_real *dissipation,
+    int *status);
+
+/* Generalised momentum M V. 124 mul, 80 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+   momentum (NV). */
+int fivebar_revolute_momentum(const fivebar_revolute_model *model, const fivebar_revolute_real *X,
+    const fivebar_revolute_real *V, fivebar_revolute_real *momentum);
+size_t fivebar_revolute_momentum_batch(const fivebar_revolute_model *model, size_t n, const
+    fivebar_revolute_real *X, const fivebar_revolute_real *V, fivebar_revolute_real *momentum, int
+    *status);
+
+/* Displacements of the actuated joints, in the order of tau. 54 mul, 28 add, 2 div, 2 sqrt, 4
+   trig. In: X (NQ). Out: q (NU). */
+int fivebar_revolute_actuator_positions(const fivebar_revolute_model *model, const
+    fivebar_revolute_real *X, fivebar_revolute_real *q);
+size_t fivebar_revolute_actuator_positions_batch(const fivebar_revolute_model *model, size_t n,
+    const fivebar_revolute_real *X, fivebar_revolute_real *q, int *status);
+
+/* Rates of the actuated joints, in the order of tau. 94 mul, 48 add, 4 div, 2 sqrt, 0 trig. In: X
+   (NQ), V (NV). Out: rates (NU). */
+int fivebar_revolute_actuator_rates(const fivebar_revolute_model *model, const
+    fivebar_revolute_real *X, const fivebar_revolute_real *V, fivebar_revolute_real *rates);
+size_t fivebar_revolute_actuator_rates_batch(const fivebar_revolute_model *model, size_t n, const
+    fivebar_revolute_real *X, const fivebar_revolute_real *V, fivebar_revolute_real *rates, int
+    *status);
+
+/* Accelerations of the actuated joints, in the order of tau. 124 mul, 62 add, 4 div, 2 sqrt, 0
+   trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
+int fivebar_revolute_actuator_accelerations(const fivebar_revolute_model *model, const
+    fivebar_revolute_real *X, const fivebar_revolute_real *V, const fivebar_revolute_real *A,
+    fivebar_revolute_real *accelerations);
+size_t fivebar_revolute_actuator_accelerations_batch(const fivebar_revolute_model *model, size_t
+    n, const fivebar_revolute_real *X, const fivebar_revolute_real *V, const fivebar_revolute_real
+    *A, fivebar_revolute_real *accelerations, int *status);
+
+/* Power that actuators give to the mechanism: tau times their rates. In: X (NQ), V (NV), tau
+   (NU). Out: power (1). */
+int fivebar_revolute_power(const fivebar_revolute_model *model, const fivebar_revolute_real *X,
+    const fivebar_revolute_real *V, const fivebar_revolute_real *tau, fivebar_revolute_real
+    *power);
+size_t fivebar_revolute_power_batch(const fivebar_revolute_model *model, size_t n, const
+    fivebar_revolute_real *X, const fivebar_revolute_real *V, const fivebar_revolute_real *tau,
+    fivebar_revolute_real *power, int *status);
+
+/* X moved by a displacement: (t + d, exp([phi]) R, y + dy) of step = (d, phi, dy). In: X (NQ),
+   step (NV). Out: X_moved (NQ). */
+int fivebar_revolute_retract(const fivebar_revolute_real *X, const fivebar_revolute_real *step,
+    fivebar_revolute_real *X_moved);
+size_t fivebar_revolute_retract_batch(size_t n, const fivebar_revolute_real *X, const
+    fivebar_revolute_real *step, fivebar_revolute_real *X_moved, int *status);
+
+/* The displacement from X0 to X1, the inverse of retract; rotations the shorter way. In: X0 (NQ),
+   X1 (NQ). Out: step (NV). */
+int fivebar_revolute_difference(const fivebar_revolute_real *X0, const fivebar_revolute_real *X1,
+    fivebar_revolute_real *step);
+size_t fivebar_revolute_difference_batch(size_t n, const fivebar_revolute_real *X0, const
+    fivebar_revolute_real *X1, fivebar_revolute_real *step, int *status);
+
+/* X0 moved by s times the displacement to X1: straight on, turning about one axis. In: X0 (NQ),
+   X1 (NQ), s (1). Out: X (NQ). */
+int fivebar_revolute_interpolate(const fivebar_revolute_real *X0, const fivebar_revolute_real *X1,
+    const fivebar_revolute_real *s, fivebar_revolute_real *X);
+size_t fivebar_revolute_interpolate_batch(size_t n, const fivebar_revolute_real *X0, const
+    fivebar_revolute_real *X1, const fivebar_revolute_real *s, fivebar_revolute_real *X, int
     *status);
 
 #ifdef __cplusplus

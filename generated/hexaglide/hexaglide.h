@@ -115,6 +115,9 @@ typedef struct {
 extern const hexaglide_params hexaglide_default_params;
 extern const hexaglide_real hexaglide_HOME_X[HEXAGLIDE_NQ];
 extern const hexaglide_real hexaglide_HOME_Q[HEXAGLIDE_NJ];
+/* Places of the actuated joints in q, and their names, in the order of tau. */
+extern const size_t hexaglide_ACTUATED[HEXAGLIDE_NU];
+extern const char *const hexaglide_ACTUATOR_NAMES[HEXAGLIDE_NU];
 
 /* Prepare a model.  HEXAGLIDE_INVALID, and the model is all NaN: a parameter is not finite or beyond
    1e+12; a mass is negative; an inertia is not symmetric, or has a negative principal moment,
@@ -141,15 +144,8 @@ int hexaglide_H(const hexaglide_model *model, const hexaglide_real *X, hexaglide
 size_t hexaglide_H_batch(const hexaglide_model *model, size_t n, const hexaglide_real *X,
     hexaglide_real *H, int *status);
 
-/* M, Z and H together, sharing the work. 1869 mul, 1395 add, 18 div, 12 sqrt, 0 trig. In: X (NQ),
-   V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
-int hexaglide_dynamics(const hexaglide_model *model, const hexaglide_real *X, const hexaglide_real
-    *V, hexaglide_real *M, hexaglide_real *Z, hexaglide_real *H);
-size_t hexaglide_dynamics_batch(const hexaglide_model *model, size_t n, const hexaglide_real *X,
-    const hexaglide_real *V, hexaglide_real *M, hexaglide_real *Z, hexaglide_real *H, int *status);
-
-/* Displacements q of all joints, on the assembly branch of home. 204 mul, 144 add, 6 div, 12
-   sqrt, 12 trig. In: X (NQ). Out: q (NJ). */
+/* Displacements q of all joints. They are those of the assembly branch of home. 204 mul, 144 add,
+   6 div, 12 sqrt, 12 trig. In: X (NQ). Out: q (NJ). */
 int hexaglide_inverse_kinematics(const hexaglide_model *model, const hexaglide_real *X,
     hexaglide_real *q);
 size_t hexaglide_inverse_kinematics_batch(const hexaglide_model *model, size_t n, const
@@ -170,6 +166,13 @@ size_t hexaglide_joint_accelerations_batch(const hexaglide_model *model, size_t 
     hexaglide_real *X, const hexaglide_real *V, const hexaglide_real *A, hexaglide_real
     *accelerations, int *status);
 
+/* M, Z and H together, sharing the work. 1869 mul, 1395 add, 18 div, 12 sqrt, 0 trig. In: X (NQ),
+   V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
+int hexaglide_dynamics(const hexaglide_model *model, const hexaglide_real *X, const hexaglide_real
+    *V, hexaglide_real *M, hexaglide_real *Z, hexaglide_real *H);
+size_t hexaglide_dynamics_batch(const hexaglide_model *model, size_t n, const hexaglide_real *X,
+    const hexaglide_real *V, hexaglide_real *M, hexaglide_real *Z, hexaglide_real *H, int *status);
+
 /* Actuator forces tau for the acceleration A, by Eq. 3. 1239 mul, 933 add, 18 div, 12 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or
    NULL). Out: tau (NU). */
@@ -188,8 +191,9 @@ size_t hexaglide_forward_dynamics_batch(const hexaglide_model *model, size_t n, 
     hexaglide_real *X, const hexaglide_real *V, const hexaglide_real *tau, const hexaglide_real
     *wrench, hexaglide_real *A, int *status);
 
-/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
-   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
+/* A with the entries of passive extra coordinates that the others allow. It is A: there are no
+   passive extra coordinates, whose accelerations would follow. In: X (NQ), V (NV), A (NV), wrench
+   (NW, or NULL). Out: completed (NV). */
 int hexaglide_complete_acceleration(const hexaglide_model *model, const hexaglide_real *X, const
     hexaglide_real *V, const hexaglide_real *A, const hexaglide_real *wrench, hexaglide_real
     *completed);
@@ -197,9 +201,9 @@ size_t hexaglide_complete_acceleration_batch(const hexaglide_model *model, size_
     hexaglide_real *X, const hexaglide_real *V, const hexaglide_real *A, const hexaglide_real
     *wrench, hexaglide_real *completed, int *status);
 
-/* Force of each leg on the platform at its platform joint, base axes. 1092 mul, 798 add, 18 div,
-   12 sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
-   forces (6 x 3). */
+/* Force of each leg on the platform at its platform joint, base axes. The actuators give the
+   forces of inverse_dynamics. 1092 mul, 798 add, 18 div, 12 sqrt, 0 trig; inverse dynamics apart.
+   In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (6 x 3). */
 int hexaglide_leg_reactions(const hexaglide_model *model, const hexaglide_real *X, const
     hexaglide_real *V, const hexaglide_real *A, const hexaglide_real *wrench, hexaglide_real
     *forces);
@@ -207,38 +211,90 @@ size_t hexaglide_leg_reactions_batch(const hexaglide_model *model, size_t n, con
     *X, const hexaglide_real *V, const hexaglide_real *A, const hexaglide_real *wrench,
     hexaglide_real *forces, int *status);
 
-/* Kinetic and potential energy; the latter is zero at the base origin. In: X (NQ), V (NV). Out:
-   kinetic (1), potential (1). */
+/* Kinetic and potential energy [J]; the latter is zero at the base origin. In: X (NQ), V (NV).
+   Out: kinetic (1), potential (1). */
 int hexaglide_energy(const hexaglide_model *model, const hexaglide_real *X, const hexaglide_real
     *V, hexaglide_real *kinetic, hexaglide_real *potential);
 size_t hexaglide_energy_batch(const hexaglide_model *model, size_t n, const hexaglide_real *X,
     const hexaglide_real *V, hexaglide_real *kinetic, hexaglide_real *potential, int *status);
 
-/* X at which the driven joints stand at q_actuated, by Gauss-Newton from X0; extra coordinates
-   that the drives do not determine stay. In: q_actuated (NU), X0 (NQ). Out: X (NQ). */
-int hexaglide_forward_kinematics(const hexaglide_model *model, const hexaglide_real *q_actuated,
-    const hexaglide_real *X0, hexaglide_real *X);
-size_t hexaglide_forward_kinematics_batch(const hexaglide_model *model, size_t n, const
-    hexaglide_real *q_actuated, const hexaglide_real *X0, hexaglide_real *X, int *status);
-
-/* Singular values of H in descending order, moment rows divided by the rms distance of the
-   platform points from their centroid; for every leg the least tested pivot as a fraction of its
-   scale. 439 mul, 276 add, 12 div, 19 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+/* How far a pose is from singularities: singular values of H, rows of moments divided by a
+   length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
+   distance of the platform points from their centroid, or where they coincide the rms size of the
+   legs. 439 mul, 276 add, 12 div, 19 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
    sigma (6), legs (6). */
 int hexaglide_condition(const hexaglide_model *model, const hexaglide_real *X, hexaglide_real
     *sigma, hexaglide_real *legs);
 size_t hexaglide_condition_batch(const hexaglide_model *model, size_t n, const hexaglide_real *X,
     hexaglide_real *sigma, hexaglide_real *legs, int *status);
 
-/* base_R_platform; a quaternion need not be normalised. In: X (NQ). Out: R (3 x 3). */
+/* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
+   that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
+   X0 (NQ). Out: X (NQ). */
+int hexaglide_forward_kinematics(const hexaglide_model *model, const hexaglide_real *q_actuated,
+    const hexaglide_real *X0, hexaglide_real *X);
+size_t hexaglide_forward_kinematics_batch(const hexaglide_model *model, size_t n, const
+    hexaglide_real *q_actuated, const hexaglide_real *X0, hexaglide_real *X, int *status);
+
+/* Power that friction takes, not negative; the rate of energy is power less this. In: X (NQ), V
+   (NV). Out: dissipation (1). */
+int hexaglide_dissipation(const hexaglide_model *model, const hexaglide_real *X, const
+    hexaglide_real *V, hexaglide_real *dissipation);
+size_t hexaglide_dissipation_batch(const hexaglide_model *model, size_t n, const hexaglide_real
+    *X, const hexaglide_real *V, hexaglide_real *dissipation, int *status);
+
+/* Generalised momentum M V. 1053 mul, 759 add, 18 div, 12 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+   momentum (NV). */
+int hexaglide_momentum(const hexaglide_model *model, const hexaglide_real *X, const hexaglide_real
+    *V, hexaglide_real *momentum);
+size_t hexaglide_momentum_batch(const hexaglide_model *model, size_t n, const hexaglide_real *X,
+    const hexaglide_real *V, hexaglide_real *momentum, int *status);
+
+/* Displacements of the actuated joints, in the order of tau. 204 mul, 144 add, 6 div, 12 sqrt, 12
+   trig. In: X (NQ). Out: q (NU). */
+int hexaglide_actuator_positions(const hexaglide_model *model, const hexaglide_real *X,
+    hexaglide_real *q);
+size_t hexaglide_actuator_positions_batch(const hexaglide_model *model, size_t n, const
+    hexaglide_real *X, hexaglide_real *q, int *status);
+
+/* Rates of the actuated joints, in the order of tau. 462 mul, 294 add, 18 div, 12 sqrt, 0 trig.
+   In: X (NQ), V (NV). Out: rates (NU). */
+int hexaglide_actuator_rates(const hexaglide_model *model, const hexaglide_real *X, const
+    hexaglide_real *V, hexaglide_real *rates);
+size_t hexaglide_actuator_rates_batch(const hexaglide_model *model, size_t n, const hexaglide_real
+    *X, const hexaglide_real *V, hexaglide_real *rates, int *status);
+
+/* Accelerations of the actuated joints, in the order of tau. 684 mul, 444 add, 18 div, 12 sqrt, 0
+   trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
+int hexaglide_actuator_accelerations(const hexaglide_model *model, const hexaglide_real *X, const
+    hexaglide_real *V, const hexaglide_real *A, hexaglide_real *accelerations);
+size_t hexaglide_actuator_accelerations_batch(const hexaglide_model *model, size_t n, const
+    hexaglide_real *X, const hexaglide_real *V, const hexaglide_real *A, hexaglide_real
+    *accelerations, int *status);
+
+/* Power that actuators give to the mechanism: tau times their rates. In: X (NQ), V (NV), tau
+   (NU). Out: power (1). */
+int hexaglide_power(const hexaglide_model *model, const hexaglide_real *X, const hexaglide_real
+    *V, const hexaglide_real *tau, hexaglide_real *power);
+size_t hexaglide_power_batch(const hexaglide_model *model, size_t n, const hexaglide_real *X,
+    const hexaglide_real *V, const hexaglide_real *tau, hexaglide_real *power, int *status);
+
+/* base_R_platform at X; a quaternion need not be normalised. Impossible where the quaternion is
+   zero or its squared length overflows. In: X (NQ). Out: R (3 x 3). */
 int hexaglide_rotation(const hexaglide_real *X, hexaglide_real *R);
 size_t hexaglide_rotation_batch(size_t n, const hexaglide_real *X, hexaglide_real *R, int *status);
 
-/* X of the platform at origin t with rotation matrix R. INVALID where R has not orthonormal rows,
-   to 1e-06 (float: 1e-5), and determinant +1. In: t (3), R (3 x 3). Out: X (NQ). */
+/* X of the platform at origin t with rotation matrix R; extra coordinates zero. INVALID where R
+   has not orthonormal rows, to 1e-06 (float: 1e-5), and determinant +1. In: t (3), R (3 x 3).
+   Out: X (NQ). */
 int hexaglide_pose(const hexaglide_real *t, const hexaglide_real *R, hexaglide_real *X);
 size_t hexaglide_pose_batch(size_t n, const hexaglide_real *t, const hexaglide_real *R,
     hexaglide_real *X, int *status);
+
+/* Rate of X at the velocity V. In: X (NQ), V (NV). Out: X_dot (NQ). */
+int hexaglide_X_dot(const hexaglide_real *X, const hexaglide_real *V, hexaglide_real *X_dot);
+size_t hexaglide_X_dot_batch(size_t n, const hexaglide_real *X, const hexaglide_real *V,
+    hexaglide_real *X_dot, int *status);
 
 /* X from roll, pitch, yaw about the fixed axes x, y, z, in that order. In: t (3), rpy (3). Out: X
    (NQ). */
@@ -246,10 +302,25 @@ int hexaglide_pose_from_rpy(const hexaglide_real *t, const hexaglide_real *rpy, 
 size_t hexaglide_pose_from_rpy_batch(size_t n, const hexaglide_real *t, const hexaglide_real *rpy,
     hexaglide_real *X, int *status);
 
-/* Rate of X at the velocity V. In: X (NQ), V (NV). Out: X_dot (NQ). */
-int hexaglide_X_dot(const hexaglide_real *X, const hexaglide_real *V, hexaglide_real *X_dot);
-size_t hexaglide_X_dot_batch(size_t n, const hexaglide_real *X, const hexaglide_real *V,
-    hexaglide_real *X_dot, int *status);
+/* X moved by a displacement: (t + d, exp([phi]) R, y + dy) of step = (d, phi, dy). In: X (NQ),
+   step (NV). Out: X_moved (NQ). */
+int hexaglide_retract(const hexaglide_real *X, const hexaglide_real *step, hexaglide_real
+    *X_moved);
+size_t hexaglide_retract_batch(size_t n, const hexaglide_real *X, const hexaglide_real *step,
+    hexaglide_real *X_moved, int *status);
+
+/* The displacement from X0 to X1, the inverse of retract; rotations the shorter way. In: X0 (NQ),
+   X1 (NQ). Out: step (NV). */
+int hexaglide_difference(const hexaglide_real *X0, const hexaglide_real *X1, hexaglide_real *step);
+size_t hexaglide_difference_batch(size_t n, const hexaglide_real *X0, const hexaglide_real *X1,
+    hexaglide_real *step, int *status);
+
+/* X0 moved by s times the displacement to X1: straight on, turning about one axis. In: X0 (NQ),
+   X1 (NQ), s (1). Out: X (NQ). */
+int hexaglide_interpolate(const hexaglide_real *X0, const hexaglide_real *X1, const hexaglide_real
+    *s, hexaglide_real *X);
+size_t hexaglide_interpolate_batch(size_t n, const hexaglide_real *X0, const hexaglide_real *X1,
+    const hexaglide_real *s, hexaglide_real *X, int *status);
 
 #ifdef __cplusplus
 }

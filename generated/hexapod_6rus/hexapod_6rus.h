@@ -118,6 +118,9 @@ typedef struct {
 extern const hexapod_6rus_params hexapod_6rus_default_params;
 extern const hexapod_6rus_real hexapod_6rus_HOME_X[HEXAPOD_6RUS_NQ];
 extern const hexapod_6rus_real hexapod_6rus_HOME_Q[HEXAPOD_6RUS_NJ];
+/* Places of the actuated joints in q, and their names, in the order of tau. */
+extern const size_t hexapod_6rus_ACTUATED[HEXAPOD_6RUS_NU];
+extern const char *const hexapod_6rus_ACTUATOR_NAMES[HEXAPOD_6RUS_NU];
 
 /* Prepare a model.  HEXAPOD_6RUS_INVALID, and the model is all NaN: a parameter is not finite or beyond
    1e+12; a mass is negative; an inertia is not symmetric, or has a negative principal moment,
@@ -146,16 +149,8 @@ int hexapod_6rus_H(const hexapod_6rus_model *model, const hexapod_6rus_real *X, 
 size_t hexapod_6rus_H_batch(const hexapod_6rus_model *model, size_t n, const hexapod_6rus_real *X,
     hexapod_6rus_real *H, int *status);
 
-/* M, Z and H together, sharing the work. 2229 mul, 1605 add, 24 div, 12 sqrt, 0 trig. In: X (NQ),
-   V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
-int hexapod_6rus_dynamics(const hexapod_6rus_model *model, const hexapod_6rus_real *X, const
-    hexapod_6rus_real *V, hexapod_6rus_real *M, hexapod_6rus_real *Z, hexapod_6rus_real *H);
-size_t hexapod_6rus_dynamics_batch(const hexapod_6rus_model *model, size_t n, const
-    hexapod_6rus_real *X, const hexapod_6rus_real *V, hexapod_6rus_real *M, hexapod_6rus_real *Z,
-    hexapod_6rus_real *H, int *status);
-
-/* Displacements q of all joints, on the assembly branch of home. 294 mul, 168 add, 12 div, 12
-   sqrt, 18 trig. In: X (NQ). Out: q (NJ). */
+/* Displacements q of all joints. They are those of the assembly branch of home. 294 mul, 168 add,
+   12 div, 12 sqrt, 18 trig. In: X (NQ). Out: q (NJ). */
 int hexapod_6rus_inverse_kinematics(const hexapod_6rus_model *model, const hexapod_6rus_real *X,
     hexapod_6rus_real *q);
 size_t hexapod_6rus_inverse_kinematics_batch(const hexapod_6rus_model *model, size_t n, const
@@ -175,6 +170,14 @@ int hexapod_6rus_joint_accelerations(const hexapod_6rus_model *model, const hexa
 size_t hexapod_6rus_joint_accelerations_batch(const hexapod_6rus_model *model, size_t n, const
     hexapod_6rus_real *X, const hexapod_6rus_real *V, const hexapod_6rus_real *A,
     hexapod_6rus_real *accelerations, int *status);
+
+/* M, Z and H together, sharing the work. 2229 mul, 1605 add, 24 div, 12 sqrt, 0 trig. In: X (NQ),
+   V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
+int hexapod_6rus_dynamics(const hexapod_6rus_model *model, const hexapod_6rus_real *X, const
+    hexapod_6rus_real *V, hexapod_6rus_real *M, hexapod_6rus_real *Z, hexapod_6rus_real *H);
+size_t hexapod_6rus_dynamics_batch(const hexapod_6rus_model *model, size_t n, const
+    hexapod_6rus_real *X, const hexapod_6rus_real *V, hexapod_6rus_real *M, hexapod_6rus_real *Z,
+    hexapod_6rus_real *H, int *status);
 
 /* Actuator forces tau for the acceleration A, by Eq. 3. 1587 mul, 1101 add, 24 div, 12 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or
@@ -196,8 +199,9 @@ size_t hexapod_6rus_forward_dynamics_batch(const hexapod_6rus_model *model, size
     hexapod_6rus_real *X, const hexapod_6rus_real *V, const hexapod_6rus_real *tau, const
     hexapod_6rus_real *wrench, hexapod_6rus_real *A, int *status);
 
-/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
-   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
+/* A with the entries of passive extra coordinates that the others allow. It is A: there are no
+   passive extra coordinates, whose accelerations would follow. In: X (NQ), V (NV), A (NV), wrench
+   (NW, or NULL). Out: completed (NV). */
 int hexapod_6rus_complete_acceleration(const hexapod_6rus_model *model, const hexapod_6rus_real
     *X, const hexapod_6rus_real *V, const hexapod_6rus_real *A, const hexapod_6rus_real *wrench,
     hexapod_6rus_real *completed);
@@ -205,9 +209,9 @@ size_t hexapod_6rus_complete_acceleration_batch(const hexapod_6rus_model *model,
     hexapod_6rus_real *X, const hexapod_6rus_real *V, const hexapod_6rus_real *A, const
     hexapod_6rus_real *wrench, hexapod_6rus_real *completed, int *status);
 
-/* Force of each leg on the platform at its platform joint, base axes. 1440 mul, 966 add, 24 div,
-   12 sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
-   forces (6 x 3). */
+/* Force of each leg on the platform at its platform joint, base axes. The actuators give the
+   forces of inverse_dynamics. 1440 mul, 966 add, 24 div, 12 sqrt, 0 trig; inverse dynamics apart.
+   In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (6 x 3). */
 int hexapod_6rus_leg_reactions(const hexapod_6rus_model *model, const hexapod_6rus_real *X, const
     hexapod_6rus_real *V, const hexapod_6rus_real *A, const hexapod_6rus_real *wrench,
     hexapod_6rus_real *forces);
@@ -215,41 +219,95 @@ size_t hexapod_6rus_leg_reactions_batch(const hexapod_6rus_model *model, size_t 
     hexapod_6rus_real *X, const hexapod_6rus_real *V, const hexapod_6rus_real *A, const
     hexapod_6rus_real *wrench, hexapod_6rus_real *forces, int *status);
 
-/* Kinetic and potential energy; the latter is zero at the base origin. In: X (NQ), V (NV). Out:
-   kinetic (1), potential (1). */
+/* Kinetic and potential energy [J]; the latter is zero at the base origin. In: X (NQ), V (NV).
+   Out: kinetic (1), potential (1). */
 int hexapod_6rus_energy(const hexapod_6rus_model *model, const hexapod_6rus_real *X, const
     hexapod_6rus_real *V, hexapod_6rus_real *kinetic, hexapod_6rus_real *potential);
 size_t hexapod_6rus_energy_batch(const hexapod_6rus_model *model, size_t n, const
     hexapod_6rus_real *X, const hexapod_6rus_real *V, hexapod_6rus_real *kinetic,
     hexapod_6rus_real *potential, int *status);
 
-/* X at which the driven joints stand at q_actuated, by Gauss-Newton from X0; extra coordinates
-   that the drives do not determine stay. In: q_actuated (NU), X0 (NQ). Out: X (NQ). */
-int hexapod_6rus_forward_kinematics(const hexapod_6rus_model *model, const hexapod_6rus_real
-    *q_actuated, const hexapod_6rus_real *X0, hexapod_6rus_real *X);
-size_t hexapod_6rus_forward_kinematics_batch(const hexapod_6rus_model *model, size_t n, const
-    hexapod_6rus_real *q_actuated, const hexapod_6rus_real *X0, hexapod_6rus_real *X, int *status);
-
-/* Singular values of H in descending order, moment rows divided by the rms distance of the
-   platform points from their centroid; for every leg the least tested pivot as a fraction of its
-   scale. 613 mul, 348 add, 18 div, 25 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+/* How far a pose is from singularities: singular values of H, rows of moments divided by a
+   length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
+   distance of the platform points from their centroid, or where they coincide the rms size of the
+   legs. 613 mul, 348 add, 18 div, 25 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
    sigma (6), legs (6). */
 int hexapod_6rus_condition(const hexapod_6rus_model *model, const hexapod_6rus_real *X,
     hexapod_6rus_real *sigma, hexapod_6rus_real *legs);
 size_t hexapod_6rus_condition_batch(const hexapod_6rus_model *model, size_t n, const
     hexapod_6rus_real *X, hexapod_6rus_real *sigma, hexapod_6rus_real *legs, int *status);
 
-/* base_R_platform; a quaternion need not be normalised. In: X (NQ). Out: R (3 x 3). */
+/* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
+   that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
+   X0 (NQ). Out: X (NQ). */
+int hexapod_6rus_forward_kinematics(const hexapod_6rus_model *model, const hexapod_6rus_real
+    *q_actuated, const hexapod_6rus_real *X0, hexapod_6rus_real *X);
+size_t hexapod_6rus_forward_kinematics_batch(const hexapod_6rus_model *model, size_t n, const
+    hexapod_6rus_real *q_actuated, const hexapod_6rus_real *X0, hexapod_6rus_real *X, int *status);
+
+/* Power that friction takes, not negative; the rate of energy is power less this. In: X (NQ), V
+   (NV). Out: dissipation (1). */
+int hexapod_6rus_dissipation(const hexapod_6rus_model *model, const hexapod_6rus_real *X, const
+    hexapod_6rus_real *V, hexapod_6rus_real *dissipation);
+size_t hexapod_6rus_dissipation_batch(const hexapod_6rus_model *model, size_t n, const
+    hexapod_6rus_real *X, const hexapod_6rus_real *V, hexapod_6rus_real *dissipation, int *status);
+
+/* Generalised momentum M V. 1293 mul, 903 add, 24 div, 12 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+   momentum (NV). */
+int hexapod_6rus_momentum(const hexapod_6rus_model *model, const hexapod_6rus_real *X, const
+    hexapod_6rus_real *V, hexapod_6rus_real *momentum);
+size_t hexapod_6rus_momentum_batch(const hexapod_6rus_model *model, size_t n, const
+    hexapod_6rus_real *X, const hexapod_6rus_real *V, hexapod_6rus_real *momentum, int *status);
+
+/* Displacements of the actuated joints, in the order of tau. 294 mul, 168 add, 12 div, 12 sqrt,
+   18 trig. In: X (NQ). Out: q (NU). */
+int hexapod_6rus_actuator_positions(const hexapod_6rus_model *model, const hexapod_6rus_real *X,
+    hexapod_6rus_real *q);
+size_t hexapod_6rus_actuator_positions_batch(const hexapod_6rus_model *model, size_t n, const
+    hexapod_6rus_real *X, hexapod_6rus_real *q, int *status);
+
+/* Rates of the actuated joints, in the order of tau. 684 mul, 384 add, 24 div, 12 sqrt, 0 trig.
+   In: X (NQ), V (NV). Out: rates (NU). */
+int hexapod_6rus_actuator_rates(const hexapod_6rus_model *model, const hexapod_6rus_real *X, const
+    hexapod_6rus_real *V, hexapod_6rus_real *rates);
+size_t hexapod_6rus_actuator_rates_batch(const hexapod_6rus_model *model, size_t n, const
+    hexapod_6rus_real *X, const hexapod_6rus_real *V, hexapod_6rus_real *rates, int *status);
+
+/* Accelerations of the actuated joints, in the order of tau. 990 mul, 570 add, 24 div, 12 sqrt, 0
+   trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
+int hexapod_6rus_actuator_accelerations(const hexapod_6rus_model *model, const hexapod_6rus_real
+    *X, const hexapod_6rus_real *V, const hexapod_6rus_real *A, hexapod_6rus_real *accelerations);
+size_t hexapod_6rus_actuator_accelerations_batch(const hexapod_6rus_model *model, size_t n, const
+    hexapod_6rus_real *X, const hexapod_6rus_real *V, const hexapod_6rus_real *A,
+    hexapod_6rus_real *accelerations, int *status);
+
+/* Power that actuators give to the mechanism: tau times their rates. In: X (NQ), V (NV), tau
+   (NU). Out: power (1). */
+int hexapod_6rus_power(const hexapod_6rus_model *model, const hexapod_6rus_real *X, const
+    hexapod_6rus_real *V, const hexapod_6rus_real *tau, hexapod_6rus_real *power);
+size_t hexapod_6rus_power_batch(const hexapod_6rus_model *model, size_t n, const hexapod_6rus_real
+    *X, const hexapod_6rus_real *V, const hexapod_6rus_real *tau, hexapod_6rus_real *power, int
+    *status);
+
+/* base_R_platform at X; a quaternion need not be normalised. Impossible where the quaternion is
+   zero or its squared length overflows. In: X (NQ). Out: R (3 x 3). */
 int hexapod_6rus_rotation(const hexapod_6rus_real *X, hexapod_6rus_real *R);
 size_t hexapod_6rus_rotation_batch(size_t n, const hexapod_6rus_real *X, hexapod_6rus_real *R, int
     *status);
 
-/* X of the platform at origin t with rotation matrix R. INVALID where R has not orthonormal rows,
-   to 1e-06 (float: 1e-5), and determinant +1. In: t (3), R (3 x 3). Out: X (NQ). */
+/* X of the platform at origin t with rotation matrix R; extra coordinates zero. INVALID where R
+   has not orthonormal rows, to 1e-06 (float: 1e-5), and determinant +1. In: t (3), R (3 x 3).
+   Out: X (NQ). */
 int hexapod_6rus_pose(const hexapod_6rus_real *t, const hexapod_6rus_real *R, hexapod_6rus_real
     *X);
 size_t hexapod_6rus_pose_batch(size_t n, const hexapod_6rus_real *t, const hexapod_6rus_real *R,
     hexapod_6rus_real *X, int *status);
+
+/* Rate of X at the velocity V. In: X (NQ), V (NV). Out: X_dot (NQ). */
+int hexapod_6rus_X_dot(const hexapod_6rus_real *X, const hexapod_6rus_real *V, hexapod_6rus_real
+    *X_dot);
+size_t hexapod_6rus_X_dot_batch(size_t n, const hexapod_6rus_real *X, const hexapod_6rus_real *V,
+    hexapod_6rus_real *X_dot, int *status);
 
 /* X from roll, pitch, yaw about the fixed axes x, y, z, in that order. In: t (3), rpy (3). Out: X
    (NQ). */
@@ -258,11 +316,26 @@ int hexapod_6rus_pose_from_rpy(const hexapod_6rus_real *t, const hexapod_6rus_re
 size_t hexapod_6rus_pose_from_rpy_batch(size_t n, const hexapod_6rus_real *t, const
     hexapod_6rus_real *rpy, hexapod_6rus_real *X, int *status);
 
-/* Rate of X at the velocity V. In: X (NQ), V (NV). Out: X_dot (NQ). */
-int hexapod_6rus_X_dot(const hexapod_6rus_real *X, const hexapod_6rus_real *V, hexapod_6rus_real
-    *X_dot);
-size_t hexapod_6rus_X_dot_batch(size_t n, const hexapod_6rus_real *X, const hexapod_6rus_real *V,
-    hexapod_6rus_real *X_dot, int *status);
+/* X moved by a displacement: (t + d, exp([phi]) R, y + dy) of step = (d, phi, dy). In: X (NQ),
+   step (NV). Out: X_moved (NQ). */
+int hexapod_6rus_retract(const hexapod_6rus_real *X, const hexapod_6rus_real *step,
+    hexapod_6rus_real *X_moved);
+size_t hexapod_6rus_retract_batch(size_t n, const hexapod_6rus_real *X, const hexapod_6rus_real
+    *step, hexapod_6rus_real *X_moved, int *status);
+
+/* The displacement from X0 to X1, the inverse of retract; rotations the shorter way. In: X0 (NQ),
+   X1 (NQ). Out: step (NV). */
+int hexapod_6rus_difference(const hexapod_6rus_real *X0, const hexapod_6rus_real *X1,
+    hexapod_6rus_real *step);
+size_t hexapod_6rus_difference_batch(size_t n, const hexapod_6rus_real *X0, const
+    hexapod_6rus_real *X1, hexapod_6rus_real *step, int *status);
+
+/* X0 moved by s times the displacement to X1: straight on, turning about one axis. In: X0 (NQ),
+   X1 (NQ), s (1). Out: X (NQ). */
+int hexapod_6rus_interpolate(const hexapod_6rus_real *X0, const hexapod_6rus_real *X1, const
+    hexapod_6rus_real *s, hexapod_6rus_real *X);
+size_t hexapod_6rus_interpolate_batch(size_t n, const hexapod_6rus_real *X0, const
+    hexapod_6rus_real *X1, const hexapod_6rus_real *s, hexapod_6rus_real *X, int *status);
 
 #ifdef __cplusplus
 }

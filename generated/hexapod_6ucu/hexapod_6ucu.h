@@ -116,6 +116,9 @@ typedef struct {
 extern const hexapod_6ucu_params hexapod_6ucu_default_params;
 extern const hexapod_6ucu_real hexapod_6ucu_HOME_X[HEXAPOD_6UCU_NQ];
 extern const hexapod_6ucu_real hexapod_6ucu_HOME_Q[HEXAPOD_6UCU_NJ];
+/* Places of the actuated joints in q, and their names, in the order of tau. */
+extern const size_t hexapod_6ucu_ACTUATED[HEXAPOD_6UCU_NU];
+extern const char *const hexapod_6ucu_ACTUATOR_NAMES[HEXAPOD_6UCU_NU];
 
 /* Prepare a model.  HEXAPOD_6UCU_INVALID, and the model is all NaN: a parameter is not finite or beyond
    1e+12; a mass is negative; an inertia is not symmetric, or has a negative principal moment,
@@ -144,16 +147,8 @@ int hexapod_6ucu_H(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, 
 size_t hexapod_6ucu_H_batch(const hexapod_6ucu_model *model, size_t n, const hexapod_6ucu_real *X,
     hexapod_6ucu_real *H, int *status);
 
-/* M, Z and H together, sharing the work. 3819 mul, 2745 add, 30 div, 18 sqrt, 0 trig. In: X (NQ),
-   V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
-int hexapod_6ucu_dynamics(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, const
-    hexapod_6ucu_real *V, hexapod_6ucu_real *M, hexapod_6ucu_real *Z, hexapod_6ucu_real *H);
-size_t hexapod_6ucu_dynamics_batch(const hexapod_6ucu_model *model, size_t n, const
-    hexapod_6ucu_real *X, const hexapod_6ucu_real *V, hexapod_6ucu_real *M, hexapod_6ucu_real *Z,
-    hexapod_6ucu_real *H, int *status);
-
-/* Displacements q of all joints, on the assembly branch of home. 444 mul, 288 add, 18 div, 18
-   sqrt, 18 trig. In: X (NQ). Out: q (NJ). */
+/* Displacements q of all joints. They are those of the assembly branch of home. 444 mul, 288 add,
+   18 div, 18 sqrt, 18 trig. In: X (NQ). Out: q (NJ). */
 int hexapod_6ucu_inverse_kinematics(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X,
     hexapod_6ucu_real *q);
 size_t hexapod_6ucu_inverse_kinematics_batch(const hexapod_6ucu_model *model, size_t n, const
@@ -173,6 +168,14 @@ int hexapod_6ucu_joint_accelerations(const hexapod_6ucu_model *model, const hexa
 size_t hexapod_6ucu_joint_accelerations_batch(const hexapod_6ucu_model *model, size_t n, const
     hexapod_6ucu_real *X, const hexapod_6ucu_real *V, const hexapod_6ucu_real *A,
     hexapod_6ucu_real *accelerations, int *status);
+
+/* M, Z and H together, sharing the work. 3819 mul, 2745 add, 30 div, 18 sqrt, 0 trig. In: X (NQ),
+   V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
+int hexapod_6ucu_dynamics(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, const
+    hexapod_6ucu_real *V, hexapod_6ucu_real *M, hexapod_6ucu_real *Z, hexapod_6ucu_real *H);
+size_t hexapod_6ucu_dynamics_batch(const hexapod_6ucu_model *model, size_t n, const
+    hexapod_6ucu_real *X, const hexapod_6ucu_real *V, hexapod_6ucu_real *M, hexapod_6ucu_real *Z,
+    hexapod_6ucu_real *H, int *status);
 
 /* Actuator forces tau for the acceleration A, by Eq. 3. 2205 mul, 1641 add, 30 div, 18 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or
@@ -194,8 +197,9 @@ size_t hexapod_6ucu_forward_dynamics_batch(const hexapod_6ucu_model *model, size
     hexapod_6ucu_real *X, const hexapod_6ucu_real *V, const hexapod_6ucu_real *tau, const
     hexapod_6ucu_real *wrench, hexapod_6ucu_real *A, int *status);
 
-/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
-   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
+/* A with the entries of passive extra coordinates that the others allow. It is A: there are no
+   passive extra coordinates, whose accelerations would follow. In: X (NQ), V (NV), A (NV), wrench
+   (NW, or NULL). Out: completed (NV). */
 int hexapod_6ucu_complete_acceleration(const hexapod_6ucu_model *model, const hexapod_6ucu_real
     *X, const hexapod_6ucu_real *V, const hexapod_6ucu_real *A, const hexapod_6ucu_real *wrench,
     hexapod_6ucu_real *completed);
@@ -203,9 +207,9 @@ size_t hexapod_6ucu_complete_acceleration_batch(const hexapod_6ucu_model *model,
     hexapod_6ucu_real *X, const hexapod_6ucu_real *V, const hexapod_6ucu_real *A, const
     hexapod_6ucu_real *wrench, hexapod_6ucu_real *completed, int *status);
 
-/* Force, then moment, of each leg on the platform at its platform joint, base axes. 2058 mul,
-   1488 add, 30 div, 18 sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench
-   (NW, or NULL). Out: forces (6 x 6). */
+/* Force and moment of each leg on the platform at its platform joint, base axes. The actuators
+   give the forces of inverse_dynamics. 2058 mul, 1488 add, 30 div, 18 sqrt, 0 trig; inverse
+   dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (6 x 6). */
 int hexapod_6ucu_leg_reactions(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, const
     hexapod_6ucu_real *V, const hexapod_6ucu_real *A, const hexapod_6ucu_real *wrench,
     hexapod_6ucu_real *forces);
@@ -213,41 +217,95 @@ size_t hexapod_6ucu_leg_reactions_batch(const hexapod_6ucu_model *model, size_t 
     hexapod_6ucu_real *X, const hexapod_6ucu_real *V, const hexapod_6ucu_real *A, const
     hexapod_6ucu_real *wrench, hexapod_6ucu_real *forces, int *status);
 
-/* Kinetic and potential energy; the latter is zero at the base origin. In: X (NQ), V (NV). Out:
-   kinetic (1), potential (1). */
+/* Kinetic and potential energy [J]; the latter is zero at the base origin. In: X (NQ), V (NV).
+   Out: kinetic (1), potential (1). */
 int hexapod_6ucu_energy(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, const
     hexapod_6ucu_real *V, hexapod_6ucu_real *kinetic, hexapod_6ucu_real *potential);
 size_t hexapod_6ucu_energy_batch(const hexapod_6ucu_model *model, size_t n, const
     hexapod_6ucu_real *X, const hexapod_6ucu_real *V, hexapod_6ucu_real *kinetic,
     hexapod_6ucu_real *potential, int *status);
 
-/* X at which the driven joints stand at q_actuated, by Gauss-Newton from X0; extra coordinates
-   that the drives do not determine stay. In: q_actuated (NU), X0 (NQ). Out: X (NQ). */
-int hexapod_6ucu_forward_kinematics(const hexapod_6ucu_model *model, const hexapod_6ucu_real
-    *q_actuated, const hexapod_6ucu_real *X0, hexapod_6ucu_real *X);
-size_t hexapod_6ucu_forward_kinematics_batch(const hexapod_6ucu_model *model, size_t n, const
-    hexapod_6ucu_real *q_actuated, const hexapod_6ucu_real *X0, hexapod_6ucu_real *X, int *status);
-
-/* Singular values of H in descending order, moment rows divided by the rms distance of the
-   platform points from their centroid; for every leg the least tested pivot as a fraction of its
-   scale. 589 mul, 384 add, 18 div, 37 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+/* How far a pose is from singularities: singular values of H, rows of moments divided by a
+   length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
+   distance of the platform points from their centroid, or where they coincide the rms size of the
+   legs. 589 mul, 384 add, 18 div, 37 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
    sigma (6), legs (6). */
 int hexapod_6ucu_condition(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X,
     hexapod_6ucu_real *sigma, hexapod_6ucu_real *legs);
 size_t hexapod_6ucu_condition_batch(const hexapod_6ucu_model *model, size_t n, const
     hexapod_6ucu_real *X, hexapod_6ucu_real *sigma, hexapod_6ucu_real *legs, int *status);
 
-/* base_R_platform; a quaternion need not be normalised. In: X (NQ). Out: R (3 x 3). */
+/* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
+   that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
+   X0 (NQ). Out: X (NQ). */
+int hexapod_6ucu_forward_kinematics(const hexapod_6ucu_model *model, const hexapod_6ucu_real
+    *q_actuated, const hexapod_6ucu_real *X0, hexapod_6ucu_real *X);
+size_t hexapod_6ucu_forward_kinematics_batch(const hexapod_6ucu_model *model, size_t n, const
+    hexapod_6ucu_real *q_actuated, const hexapod_6ucu_real *X0, hexapod_6ucu_real *X, int *status);
+
+/* Power that friction takes, not negative; the rate of energy is power less this. In: X (NQ), V
+   (NV). Out: dissipation (1). */
+int hexapod_6ucu_dissipation(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, const
+    hexapod_6ucu_real *V, hexapod_6ucu_real *dissipation);
+size_t hexapod_6ucu_dissipation_batch(const hexapod_6ucu_model *model, size_t n, const
+    hexapod_6ucu_real *X, const hexapod_6ucu_real *V, hexapod_6ucu_real *dissipation, int *status);
+
+/* Generalised momentum M V. 2421 mul, 1629 add, 30 div, 18 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+   momentum (NV). */
+int hexapod_6ucu_momentum(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, const
+    hexapod_6ucu_real *V, hexapod_6ucu_real *momentum);
+size_t hexapod_6ucu_momentum_batch(const hexapod_6ucu_model *model, size_t n, const
+    hexapod_6ucu_real *X, const hexapod_6ucu_real *V, hexapod_6ucu_real *momentum, int *status);
+
+/* Displacements of the actuated joints, in the order of tau. 444 mul, 288 add, 18 div, 18 sqrt,
+   18 trig. In: X (NQ). Out: q (NU). */
+int hexapod_6ucu_actuator_positions(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X,
+    hexapod_6ucu_real *q);
+size_t hexapod_6ucu_actuator_positions_batch(const hexapod_6ucu_model *model, size_t n, const
+    hexapod_6ucu_real *X, hexapod_6ucu_real *q, int *status);
+
+/* Rates of the actuated joints, in the order of tau. 876 mul, 528 add, 30 div, 18 sqrt, 0 trig.
+   In: X (NQ), V (NV). Out: rates (NU). */
+int hexapod_6ucu_actuator_rates(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, const
+    hexapod_6ucu_real *V, hexapod_6ucu_real *rates);
+size_t hexapod_6ucu_actuator_rates_batch(const hexapod_6ucu_model *model, size_t n, const
+    hexapod_6ucu_real *X, const hexapod_6ucu_real *V, hexapod_6ucu_real *rates, int *status);
+
+/* Accelerations of the actuated joints, in the order of tau. 1356 mul, 864 add, 30 div, 18 sqrt,
+   0 trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
+int hexapod_6ucu_actuator_accelerations(const hexapod_6ucu_model *model, const hexapod_6ucu_real
+    *X, const hexapod_6ucu_real *V, const hexapod_6ucu_real *A, hexapod_6ucu_real *accelerations);
+size_t hexapod_6ucu_actuator_accelerations_batch(const hexapod_6ucu_model *model, size_t n, const
+    hexapod_6ucu_real *X, const hexapod_6ucu_real *V, const hexapod_6ucu_real *A,
+    hexapod_6ucu_real *accelerations, int *status);
+
+/* Power that actuators give to the mechanism: tau times their rates. In: X (NQ), V (NV), tau
+   (NU). Out: power (1). */
+int hexapod_6ucu_power(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, const
+    hexapod_6ucu_real *V, const hexapod_6ucu_real *tau, hexapod_6ucu_real *power);
+size_t hexapod_6ucu_power_batch(const hexapod_6ucu_model *model, size_t n, const hexapod_6ucu_real
+    *X, const hexapod_6ucu_real *V, const hexapod_6ucu_real *tau, hexapod_6ucu_real *power, int
+    *status);
+
+/* base_R_platform at X; a quaternion need not be normalised. Impossible where the quaternion is
+   zero or its squared length overflows. In: X (NQ). Out: R (3 x 3). */
 int hexapod_6ucu_rotation(const hexapod_6ucu_real *X, hexapod_6ucu_real *R);
 size_t hexapod_6ucu_rotation_batch(size_t n, const hexapod_6ucu_real *X, hexapod_6ucu_real *R, int
     *status);
 
-/* X of the platform at origin t with rotation matrix R. INVALID where R has not orthonormal rows,
-   to 1e-06 (float: 1e-5), and determinant +1. In: t (3), R (3 x 3). Out: X (NQ). */
+/* X of the platform at origin t with rotation matrix R; extra coordinates zero. INVALID where R
+   has not orthonormal rows, to 1e-06 (float: 1e-5), and determinant +1. In: t (3), R (3 x 3).
+   Out: X (NQ). */
 int hexapod_6ucu_pose(const hexapod_6ucu_real *t, const hexapod_6ucu_real *R, hexapod_6ucu_real
     *X);
 size_t hexapod_6ucu_pose_batch(size_t n, const hexapod_6ucu_real *t, const hexapod_6ucu_real *R,
     hexapod_6ucu_real *X, int *status);
+
+/* Rate of X at the velocity V. In: X (NQ), V (NV). Out: X_dot (NQ). */
+int hexapod_6ucu_X_dot(const hexapod_6ucu_real *X, const hexapod_6ucu_real *V, hexapod_6ucu_real
+    *X_dot);
+size_t hexapod_6ucu_X_dot_batch(size_t n, const hexapod_6ucu_real *X, const hexapod_6ucu_real *V,
+    hexapod_6ucu_real *X_dot, int *status);
 
 /* X from roll, pitch, yaw about the fixed axes x, y, z, in that order. In: t (3), rpy (3). Out: X
    (NQ). */
@@ -256,11 +314,26 @@ int hexapod_6ucu_pose_from_rpy(const hexapod_6ucu_real *t, const hexapod_6ucu_re
 size_t hexapod_6ucu_pose_from_rpy_batch(size_t n, const hexapod_6ucu_real *t, const
     hexapod_6ucu_real *rpy, hexapod_6ucu_real *X, int *status);
 
-/* Rate of X at the velocity V. In: X (NQ), V (NV). Out: X_dot (NQ). */
-int hexapod_6ucu_X_dot(const hexapod_6ucu_real *X, const hexapod_6ucu_real *V, hexapod_6ucu_real
-    *X_dot);
-size_t hexapod_6ucu_X_dot_batch(size_t n, const hexapod_6ucu_real *X, const hexapod_6ucu_real *V,
-    hexapod_6ucu_real *X_dot, int *status);
+/* X moved by a displacement: (t + d, exp([phi]) R, y + dy) of step = (d, phi, dy). In: X (NQ),
+   step (NV). Out: X_moved (NQ). */
+int hexapod_6ucu_retract(const hexapod_6ucu_real *X, const hexapod_6ucu_real *step,
+    hexapod_6ucu_real *X_moved);
+size_t hexapod_6ucu_retract_batch(size_t n, const hexapod_6ucu_real *X, const hexapod_6ucu_real
+    *step, hexapod_6ucu_real *X_moved, int *status);
+
+/* The displacement from X0 to X1, the inverse of retract; rotations the shorter way. In: X0 (NQ),
+   X1 (NQ). Out: step (NV). */
+int hexapod_6ucu_difference(const hexapod_6ucu_real *X0, const hexapod_6ucu_real *X1,
+    hexapod_6ucu_real *step);
+size_t hexapod_6ucu_difference_batch(size_t n, const hexapod_6ucu_real *X0, const
+    hexapod_6ucu_real *X1, hexapod_6ucu_real *step, int *status);
+
+/* X0 moved by s times the displacement to X1: straight on, turning about one axis. In: X0 (NQ),
+   X1 (NQ), s (1). Out: X (NQ). */
+int hexapod_6ucu_interpolate(const hexapod_6ucu_real *X0, const hexapod_6ucu_real *X1, const
+    hexapod_6ucu_real *s, hexapod_6ucu_real *X);
+size_t hexapod_6ucu_interpolate_batch(size_t n, const hexapod_6ucu_real *X0, const
+    hexapod_6ucu_real *X1, const hexapod_6ucu_real *s, hexapod_6ucu_real *X, int *status);
 
 #ifdef __cplusplus
 }

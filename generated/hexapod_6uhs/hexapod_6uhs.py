@@ -33,6 +33,8 @@ __all__ = [
     "NC",
     "NW",
     "NJ",
+    "ACTUATED",
+    "ACTUATOR_NAMES",
     "H",
     "HOME_Q",
     "HOME_X",
@@ -40,20 +42,29 @@ __all__ = [
     "Parameters",
     "X_dot",
     "Z",
+    "actuator_accelerations",
+    "actuator_positions",
+    "actuator_rates",
     "complete_acceleration",
     "condition",
+    "difference",
+    "dissipation",
     "dynamics",
     "energy",
     "forward_dynamics",
     "forward_kinematics",
+    "interpolate",
     "inverse_dynamics",
     "inverse_kinematics",
     "joint_accelerations",
     "joint_rates",
     "leg_reactions",
+    "momentum",
     "null_space",
     "pose",
     "pose_from_rpy",
+    "power",
+    "retract",
     "rotation",
 ]
 
@@ -119,7 +130,8 @@ _drive_uhs = (
 _pivots_uhs = (
     [0, 1, 2, 3, 4, 5],
 )
-_DRIVEN_JOINTS = (2, 5, 8, 11, 14, 17)
+ACTUATED = (2, 5, 8, 11, 14, 17)  # places of the actuated joints in q, in the order of tau
+ACTUATOR_NAMES = ('leg1_joint3', 'leg2_joint3', 'leg3_joint3', 'leg4_joint3', 'leg5_joint3', 'leg6_joint3')
 
 _DEFAULTS = {
     "gravity": [0.0, 0.0, -9.81],
@@ -371,10 +383,10 @@ def _argument(function, name, value, shape, default=None, rule=""):
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
-    if not shape:
+    if not shape and rule == "positive":
         if array.shape or not 0.0 < array < np.inf:
             raise ValueError(f"{function}: {name} is {value!r}, expected a positive number")
-    elif array.shape[-len(shape) :] != shape:
+    elif shape and array.shape[-len(shape) :] != shape:
         wanted = ", ".join(map(str, ("...", *shape)))
         raise ValueError(f"{function}: {name} has shape {array.shape}, expected ({wanted})")
     elif rule == "positive" and not np.all((array > 0.0) & (array < np.inf)):
@@ -1136,6 +1148,16 @@ def _turned(q, b):
     v, c = b * (0.5 * np.sinc(angle / (2.0 * np.pi))), np.cos(0.5 * angle)
     vector = c * q[:3] + q[3] * v + np.cross(v, q[:3], axis=0)
     return np.concatenate((vector, (c * q[3] - np.sum(v * q[:3], axis=0))[None]))
+
+
+def _turn_between(p, q):
+    """The shortest rotation vectors that turn quaternions p to q."""
+    p, q = _unit(p), _unit(q)
+    vector = p[3] * q[:3] - q[3] * p[:3] - np.cross(q[:3], p[:3], axis=0)
+    scalar, size = np.sum(p * q, axis=0), np.sqrt(np.sum(vector * vector, axis=0))
+    half, some = np.arctan2(size, np.abs(scalar)), size > 0.0
+    factor = 2.0 * np.where(some, half / np.where(some, size, 1.0), 1.0)
+    return vector * np.where(scalar < 0.0, -factor, factor)
 
 
 def _moved(X, step):
@@ -4376,6 +4398,43 @@ def _steps_forward_kinematics(m, q_actuated, X0):
     return (X,)
 
 
+def _steps_dissipation(m, X, V):
+    subtract_1 = V - V
+    dissipation = subtract_1[0]
+    return (dissipation,)
+
+
+def _steps_momentum(m, X, V):
+    M, = m.run(_run_M, ("M",), X)
+    momentum = np.einsum("ijs,js->is", M, V)
+    return (momentum,)
+
+
+def _steps_actuator_positions(m, X):
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), X)
+    q = q_of_inverse_kinematics[[2, 5, 8, 11, 14, 17]]
+    return (q,)
+
+
+def _steps_actuator_rates(m, X, V):
+    qd_of_joint_rates, = m.run(_run_joint_rates, ("qd",), X, V)
+    qd = qd_of_joint_rates[[2, 5, 8, 11, 14, 17]]
+    return (qd,)
+
+
+def _steps_actuator_accelerations(m, X, V, A):
+    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ("qdd",), X, V, A)
+    qdd = qdd_of_joint_accelerations[[2, 5, 8, 11, 14, 17]]
+    return (qdd,)
+
+
+def _steps_power(m, X, V, tau):
+    H, = m.run(_run_H, ("H",), X)
+    times_1 = np.einsum("ijs,js->is", H, tau)
+    power = np.sum(times_1 * V, axis=0)
+    return (power,)
+
+
 def _steps_rotation(m, X):
     take_1 = X[3:7]
     R = _rotation_of_quaternion(take_1)
@@ -4402,6 +4461,47 @@ def _steps_pose_from_rpy(m, t, rpy):
     quaternion_of_rpy_1 = _quaternion_of_rpy(rpy)
     join_2 = np.concatenate((t, quaternion_of_rpy_1))
     X = join_2
+    return (X,)
+
+
+def _steps_retract(m, X, step):
+    take_1 = X[0:3]
+    take_2 = X[3:7]
+    take_3 = step[0:3]
+    take_4 = step[3:6]
+    turn_quaternion_5 = _turned(take_2, take_4)
+    add_6 = take_1 + take_3
+    X_moved = np.concatenate((add_6, turn_quaternion_5))
+    return (X_moved,)
+
+
+def _steps_difference(m, X0, X1):
+    take_1 = X0[0:3]
+    take_2 = X0[3:7]
+    take_3 = X1[0:3]
+    take_4 = X1[3:7]
+    turn_between_5 = _turn_between(take_2, take_4)
+    subtract_6 = take_3 - take_1
+    step = np.concatenate((subtract_6, turn_between_5))
+    return (step,)
+
+
+def _steps_interpolate(m, X0, X1, s):
+    take_1 = X0[0:3]
+    take_2 = X0[3:7]
+    take_3 = X1[0:3]
+    take_4 = X1[3:7]
+    turn_between_5 = _turn_between(take_2, take_4)
+    subtract_6 = take_3 - take_1
+    join_7 = np.concatenate((subtract_6, turn_between_5))
+    scale_8 = join_7 * s
+    take_9 = X0[0:3]
+    take_10 = X0[3:7]
+    take_11 = scale_8[0:3]
+    take_12 = scale_8[3:6]
+    turn_quaternion_13 = _turned(take_10, take_12)
+    add_14 = take_9 + take_11
+    X = np.concatenate((add_14, turn_quaternion_13))
     return (X,)
 
 
@@ -4711,6 +4811,116 @@ def forward_kinematics(q_actuated, X0, p=None):
     )
 
 
+def dissipation(X, V, p=None):
+    """Power that friction takes, not negative; the rate of energy is power less this.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        dissipation: power that friction takes [W] (...,).
+    """
+    return _call(
+        "dissipation", _steps_dissipation, p,
+        ("X", X, (NQ,), None, "unused"),
+        ("V", V, (NV,)),
+    )
+
+
+def momentum(X, V, p=None):
+    """Generalised momentum M V.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        momentum: M V [kg m/s, kg m^2/s] (..., NV).
+    """
+    return _call(
+        "momentum", _steps_momentum, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+    )
+
+
+def actuator_positions(X, p=None):
+    """Displacements of the actuated joints, in the order of tau.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        q: displacements of the actuated joints [m or rad] (..., NU).
+    """
+    return _call(
+        "actuator_positions", _steps_actuator_positions, p,
+        ("X", X, (NQ,)),
+    )
+
+
+def actuator_rates(X, V, p=None):
+    """Rates of the actuated joints, in the order of tau.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        qd: rates of the actuated joints [m/s or rad/s] (..., NU).
+    """
+    return _call(
+        "actuator_rates", _steps_actuator_rates, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+    )
+
+
+def actuator_accelerations(X, V, A, p=None):
+    """Accelerations of the actuated joints, in the order of tau.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        A: acceleration (..., NV).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        qdd: accelerations of the actuated joints [m/s^2 or rad/s^2] (..., NU).
+    """
+    return _call(
+        "actuator_accelerations", _steps_actuator_accelerations, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+        ("A", A, (NV,)),
+    )
+
+
+def power(X, V, tau, p=None):
+    """Power that actuators give to the mechanism: tau times their rates.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        tau: actuator forces [N or N m] (..., NU).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        power: power of the actuators [W] (...,).
+    """
+    return _call(
+        "power", _steps_power, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+        ("tau", tau, (NU,)),
+    )
+
+
 def rotation(X):
     """base_R_platform at X; a quaternion need not be normalised.
 
@@ -4781,4 +4991,58 @@ def pose_from_rpy(t, rpy):
         "pose_from_rpy", _steps_pose_from_rpy, None,
         ("t", t, (3,)),
         ("rpy", rpy, (3,)),
+    )
+
+
+def retract(X, step):
+    """X moved by a displacement: (t + d, exp([phi]) R, y + dy) of step = (d, phi, dy).
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        step: displacement: of the origin, rotation vector in base axes, of extra coordinates
+            (..., NV).
+
+    Returns:
+        X_moved: the pose moved (..., NQ).
+    """
+    return _call(
+        "retract", _steps_retract, None,
+        ("X", X, (NQ,)),
+        ("step", step, (NV,)),
+    )
+
+
+def difference(X0, X1):
+    """The displacement from X0 to X1, the inverse of `retract`; rotations the shorter way.
+
+    Args:
+        X0: from, and extra coordinates (..., NQ).
+        X1: to, and extra coordinates (..., NQ).
+
+    Returns:
+        step: of the origin, rotation vector in base axes, of extra coordinates (..., NV).
+    """
+    return _call(
+        "difference", _steps_difference, None,
+        ("X0", X0, (NQ,)),
+        ("X1", X1, (NQ,)),
+    )
+
+
+def interpolate(X0, X1, s):
+    """X0 moved by s times the displacement to X1: straight on, turning about one axis.
+
+    Args:
+        X0: from, and extra coordinates (..., NQ).
+        X1: to, and extra coordinates (..., NQ).
+        s: part of the way, 0 at X0, 1 at X1 (...,).
+
+    Returns:
+        X: pose (..., NQ).
+    """
+    return _call(
+        "interpolate", _steps_interpolate, None,
+        ("X0", X0, (NQ,)),
+        ("X1", X1, (NQ,)),
+        ("s", s, ()),
     )

@@ -16,6 +16,14 @@
 typedef hexapod_6x6r_real real;
 typedef hexapod_6x6r_model prepared;
 
+enum {
+    OK = HEXAPOD_6X6R_OK,
+    UNREACHABLE = HEXAPOD_6X6R_UNREACHABLE,
+    SINGULAR = HEXAPOD_6X6R_SINGULAR,
+    INVALID = HEXAPOD_6X6R_INVALID,
+    NOT_CONVERGED = HEXAPOD_6X6R_NOT_CONVERGED
+};
+
 #define R(x) ((real)(x))
 #define UNLESS(condition) ((condition) ? R(0) : R(1))  /* flag of what must hold */
 #define LANES 8  /* states that a batch runs side by side */
@@ -64,6 +72,15 @@ INLINE real larger(real x, real y)
 INLINE real lesser(real x, real y)
 {
     return x < y || x != x ? x : y;
+}
+
+INLINE real largest(const real *x, size_t n)
+{
+    real size = 0;
+    for (size_t i = 0; i < n; ++i) {
+        size = magnitude(x[i]) > size ? magnitude(x[i]) : size;
+    }
+    return size;
 }
 
 INLINE real total(const real *x, size_t n)
@@ -126,26 +143,52 @@ INLINE void check(size_t size, size_t w, const real *x, real *flags)
 }
 
 /* Input, given state by state, with its states side by side: entry e of state k at e*w + k. */
-INLINE const real *take(size_t size, size_t w, const real *x, real *lanes, verdict *t)
+INLINE const real *side_by_side(size_t size, size_t w, const real *x, real *lanes, real *flags)
 {
     for (size_t e = 0; e < size && w > 1; ++e) {
         for (size_t k = 0; k < w; ++k) {
             lanes[e*w + k] = x[size*k + e];
         }
     }
-    check(size, w, w > 1 ? lanes : x, t->invalid);
+    check(size, w, w > 1 ? lanes : x, flags);
     return w > 1 ? lanes : x;
+}
+
+/* The same for input that may be NULL: then all its entries are `none`. */
+INLINE const real *optional(size_t size, size_t w, const real *x, real none, real *lanes, real *flags)
+{
+    for (size_t e = 0; e < size*w && !x; ++e) {
+        lanes[e] = none;
+    }
+    return x ? side_by_side(size, w, x, lanes, flags) : lanes;
+}
+
+/* Flag the states of an input, NULL or given state by state, with entries that are not positive. */
+INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
+{
+    for (size_t e = 0; e < size*w && x; ++e) {
+        flags[e/size] += UNLESS(x[e] > 0);
+    }
 }
 
 INLINE void judge(const verdict *t, size_t w, int *code)
 {
     for (size_t k = 0; k < w; ++k) {
-        code[k] = t->invalid[k] > 0 ? HEXAPOD_6X6R_INVALID
-            : t->diverged[k] > 0 ? HEXAPOD_6X6R_NOT_CONVERGED
-            : t->unreachable[k] > 0 ? HEXAPOD_6X6R_UNREACHABLE
-            : t->singular[k] > 0 ? HEXAPOD_6X6R_SINGULAR
-            : t->overflow[k] > 0 ? HEXAPOD_6X6R_INVALID : HEXAPOD_6X6R_OK;
+        code[k] = t->invalid[k] > 0 ? INVALID
+            : t->diverged[k] > 0 ? NOT_CONVERGED
+            : t->unreachable[k] > 0 ? UNREACHABLE
+            : t->singular[k] > 0 ? SINGULAR
+            : t->overflow[k] > 0 ? INVALID : OK;
     }
+}
+
+/* The same as flags, for one state. */
+INLINE void blame(int code, verdict *t)
+{
+    t->invalid[0] += UNLESS(code != INVALID);
+    t->diverged[0] += UNLESS(code != NOT_CONVERGED);
+    t->unreachable[0] += UNLESS(code != UNREACHABLE);
+    t->singular[0] += UNLESS(code != SINGULAR);
 }
 
 /* Outputs of an impossible state. */
@@ -165,7 +208,7 @@ INLINE void deliver(const real *x, size_t size, size_t w, const int *code, real 
         }
     }
     for (size_t k = 0; k < w; ++k) {
-        if (code[k] != HEXAPOD_6X6R_OK) {
+        if (code[k] != OK) {
             refuse(size, out + size*k);
         }
     }
@@ -176,15 +219,13 @@ INLINE size_t record(const int *code, size_t w, int *status)
 {
     size_t failed = 0;
     for (size_t k = 0; k < w; ++k) {
-        failed += code[k] != HEXAPOD_6X6R_OK;
+        failed += code[k] != OK;
         if (status) {
             status[k] = code[k];
         }
     }
     return failed;
 }
-
-/* ---- what parameters must be: entries of n vectors or 3 x 3 matrices one after another ---- */
 
 /* What the reader of specifications allows; floats have less to offer. */
 #define ROUNDED BY_TYPE(1e-5, 1e-06, 1e-06)  /* lengths and products of unit vectors */
@@ -466,6 +507,15 @@ const hexapod_6x6r_params hexapod_6x6r_default_params = {
 
 const hexapod_6x6r_real hexapod_6x6r_HOME_X[HEXAPOD_6X6R_NQ] = {R(0.0), R(0.0), R(0.75), R(0.0), R(0.0), R(0.0), R(1.0)};
 const hexapod_6x6r_real hexapod_6x6r_HOME_Q[HEXAPOD_6X6R_NJ] = {R(0.15), R(0.9), R(-1.0), R(0.5), R(0.8), R(-0.15), R(0.9), R(-1.0), R(-0.5), R(0.8), R(0.15), R(0.9), R(-1.0), R(0.5), R(0.8), R(-0.15), R(0.9), R(-1.0), R(-0.5), R(0.8), R(0.15), R(0.9), R(-1.0), R(0.5), R(0.8), R(-0.15), R(0.9), R(-1.0), R(-0.5), R(0.8)};
+const size_t hexapod_6x6r_ACTUATED[HEXAPOD_6X6R_NU] = {1, 6, 11, 16, 21, 26};
+const char *const hexapod_6x6r_ACTUATOR_NAMES[HEXAPOD_6X6R_NU] = {
+    "leg1_joint2",
+    "leg2_joint2",
+    "leg3_joint2",
+    "leg4_joint2",
+    "leg5_joint2",
+    "leg6_joint2",
+};
 
 static int acceptable(const hexapod_6x6r_params *p)
 {
@@ -529,7 +579,7 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
 {
     if (!acceptable(params)) {
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
-        return HEXAPOD_6X6R_INVALID;
+        return INVALID;
     }
     real total_rrrrrr = 0;
     real total_rrrrrr_x = 0;
@@ -960,10 +1010,10 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
     model->h_star_z = h_star_z;
     model->legs_size = legs_size;
     model->m_star = m_star;
-    return HEXAPOD_6X6R_OK;
+    return OK;
 }
 
-/* ---- linear equations ---- */
+/* ---- operations ---- */
 
 /* Rows change places only for a pivot that is larger by this factor: less often, and with
    rounding errors as small as with the largest pivots. */
@@ -973,7 +1023,7 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
 #define NEARLY 2
 
 /* other -= factor*row */
-INLINE void subtract(size_t n, real factor, const real *restrict row, real *restrict other)
+INLINE void eliminate(size_t n, real factor, const real *restrict row, real *restrict other)
 {
     for (size_t j = 0; j < n; ++j) {
         other[j] -= factor*row[j];
@@ -1019,7 +1069,7 @@ INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict 
         *singular += UNLESS(magnitude(pivot[p]) > PIVOT);
         x[p] = 1/pivot[p];
         for (size_t i = p + 1; i < n; ++i) {
-            subtract(stride, a[i*stride + p]*x[p], pivot, a + i*stride);
+            eliminate(stride, a[i*stride + p]*x[p], pivot, a + i*stride);
         }
     }
     for (size_t p = n; p-- > 0;) {
@@ -1122,27 +1172,49 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
     }
 }
 
-/* Systems of w states side by side: entry (i, j) of state k is a[(i*stride + j)*w + k]. */
-INLINE void solve(size_t n, size_t stride, size_t w, real *a, real *x, real *singular)
+/* Length of the rows of a system of n equations, whose right side stands in column n. */
+INLINE size_t stride_of(size_t n, size_t w)
 {
-    if (w == 1) {
-        solve_one(n, stride, a, x, singular);
-    } else {
-        solve_lanes(n, a, x, singular);
-    }
+    return w == 1 ? (n + 4)/4*4 : n + 1;
 }
 
-/* Add the wrench to a generalised force; extra coordinates get none. */
-INLINE void add_wrench(const real *wrench, real sign, size_t w, real *force)
+INLINE void set_matrix(size_t n, size_t w, const real *a, real *rows)
 {
-    for (size_t k = 0; k < w; ++k) {
-        for (size_t e = 0; e < 6; ++e) {
-            force[e*w + k] += sign*wrench[e*w + k];
+    for (size_t i = 0; i < n; ++i) {
+        for (size_t e = 0; e < n*w; ++e) {
+            rows[i*stride_of(n, w)*w + e] = a[i*n*w + e];
         }
     }
 }
 
-#define BIG 6  /* largest number of rows or columns of what follows */
+INLINE void set_right_side(size_t n, size_t w, const real *b, real *rows)
+{
+    const size_t stride = stride_of(n, w);
+    for (size_t i = 0; i < n; ++i) {
+        for (size_t e = n*w; e < stride*w; ++e) {
+            rows[i*stride*w + e] = e < (n + 1)*w ? b[i*w + e - n*w] : 0;
+        }
+    }
+}
+
+/* x with a x = b, where a stands in rows; of one state, and of w, one or LANES, side by side. */
+INLINE void solve_state(size_t n, const real *b, real *rows, real *x, real *singular)
+{
+    set_right_side(n, 1, b, rows);
+    solve_one(n, stride_of(n, 1), rows, x, singular);
+}
+
+INLINE void solve(size_t n, size_t w, const real *b, real *rows, real *x, real *singular)
+{
+    if (w == 1) {
+        solve_state(n, b, rows, x, singular);
+    } else {
+        set_right_side(n, LANES, b, rows);
+        solve_lanes(n, rows, x, singular);
+    }
+}
+
+#define BIG 6  /* most rows or columns of a matrix that is not square, or not solved */
 
 /* Reflect rows p, p + 1, ... so that column p is zero below row p; columns beyond go along.
    The reflection's vector is left in column p, the diagonal entry is returned. */
@@ -1169,7 +1241,7 @@ INLINE real reflect(size_t rows, size_t stride, size_t p, real *a)
 
 /* The shortest x with a x = b for independent rows of a[rows][columns]; returns the smallest
    diagonal entry of the triangle of a^T as a fraction of the largest. */
-static real least_norm(size_t rows, size_t columns, const real *a, const real *b, real *x)
+static real shortest(size_t rows, size_t columns, const real *a, const real *b, real *x)
 {
     real t[BIG*BIG] = {0}, diagonal[BIG] = {0}, u[BIG] = {0}, least = 0, most = 0;
     for (size_t i = 0; i < rows; ++i) {
@@ -1248,16 +1320,172 @@ static void least_squares(size_t rows, size_t n, real *a, real *x)
     }
     clear(x, n);
     if (rank) {
-        least_norm(rank, n, r, b, x);
+        shortest(rank, n, r, b, x);
     }
 }
+
+/* Turn columns p and q of a[rows][columns] until they are perpendicular; returns whether they were
+   not, to rounding. */
+static int turn_columns(size_t rows, size_t columns, size_t p, size_t q, real *a)
+{
+    real pp = 0, qq = 0, pq = 0;
+    for (size_t i = 0; i < rows; ++i) {
+        pp += a[i*columns + p]*a[i*columns + p];
+        qq += a[i*columns + q]*a[i*columns + q];
+        pq += a[i*columns + p]*a[i*columns + q];
+    }
+    if (!(magnitude(pq) > ROUNDING*root(pp)*root(qq))) {
+        return 0;
+    }
+    const real cotangent = (qq - pp)/(2*pq), size = magnitude(cotangent);
+    const real t = (cotangent < 0 ? -1 : 1)/(size + root(1 + size*size));
+    const real c = 1/root(1 + t*t), s = c*t;
+    for (size_t i = 0; i < rows; ++i) {
+        const real x = a[i*columns + p], y = a[i*columns + q];
+        a[i*columns + p] = c*x - s*y;
+        a[i*columns + q] = s*x + c*y;
+    }
+    return 1;
+}
+
+/* Singular values of a[m][n] in descending order, by one-sided Jacobi rotations. */
+INLINE void singular_values(size_t m, size_t n, const real *a, real *sigma)
+{
+    const size_t rows = m < n ? n : m, columns = m < n ? m : n;
+    const real size = largest(a, m*n);
+    real t[BIG*BIG] = {0};
+    clear(sigma, columns);
+    for (size_t i = 0; i < m; ++i) {
+        for (size_t j = 0; j < n; ++j) {
+            t[m < n ? j*m + i : i*n + j] = size > 0 ? a[i*n + j]/size : a[i*n + j];
+        }
+    }
+    for (int sweep = 0, turned = 1; sweep < 40 && turned; ++sweep) {
+        turned = 0;
+        for (size_t p = 0; p < columns; ++p) {
+            for (size_t q = p + 1; q < columns; ++q) {
+                turned |= turn_columns(rows, columns, p, q, t);
+            }
+        }
+    }
+    for (size_t j = 0; j < columns; ++j) {
+        real sum = 0;
+        for (size_t i = 0; i < rows; ++i) {
+            sum += t[i*columns + j]*t[i*columns + j];
+        }
+        const real value = size*root(sum);
+        size_t place = j;
+        for (; place > 0 && sigma[place - 1] < value; --place) {
+            sigma[place] = sigma[place - 1];
+        }
+        sigma[place] = value;
+    }
+}
+
+/* a b, a[m][n], b[n][p]: entry (i, j) of state k of a matrix with n columns is [(i*n + j)*w + k]. */
+INLINE void product(size_t m, size_t n, size_t p, size_t w, const real *a, const real *b, real *x)
+{
+    for (size_t i = 0; i < m; ++i) {
+        for (size_t c = 0; c < p; ++c) {
+            for (size_t k = 0; k < w; ++k) {
+                real sum = 0;
+                for (size_t j = 0; j < n; ++j) {
+                    sum += a[(i*n + j)*w + k]*b[(j*p + c)*w + k];
+                }
+                x[(i*p + c)*w + k] = sum;
+            }
+        }
+    }
+}
+
+/* a . b */
+INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
+{
+    clear(x, w);
+    for (size_t i = 0; i < n; ++i) {
+        for (size_t k = 0; k < w; ++k) {
+            x[k] += a[i*w + k]*b[i*w + k];
+        }
+    }
+}
+
+/* Half of a^T b a. */
+INLINE void half_form(size_t n, size_t w, const real *a, const real *b, real *x)
+{
+    for (size_t k = 0; k < w; ++k) {
+        real sum = 0;
+        for (size_t i = 0; i < n; ++i) {
+            for (size_t j = 0; j < n; ++j) {
+                sum += a[i*w + k]*b[(i*n + j)*w + k]*a[j*w + k];
+            }
+        }
+        x[k] = sum/2;
+    }
+}
+
+/* Rows of n entries, as `places` tells. */
+INLINE void take(size_t rows, size_t n, const size_t *places, const real *a, real *x)
+{
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t e = 0; e < n; ++e) {
+            x[i*n + e] = a[places[i]*n + e];
+        }
+    }
+}
+
+INLINE void divide_rows(size_t rows, size_t n, size_t w, const size_t *places, const real *b, real *x)
+{
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t e = 0; e < n*w; ++e) {
+            x[places[i]*n*w + e] /= b[e%w];
+        }
+    }
+}
+
+/* Rows of a with n entries, each followed by that of b with p entries. */
+INLINE void beside(size_t rows, size_t n, size_t p, const real *a, const real *b, real *x)
+{
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t e = 0; e < n; ++e) {
+            x[i*(n + p) + e] = a[i*n + e];
+        }
+        for (size_t e = 0; e < p; ++e) {
+            x[i*(n + p) + n + e] = b[i*p + e];
+        }
+    }
+}
+
+/* To row places[i] of x: the row c[i] of n entries times b[i]. */
+INLINE void add_forces(size_t rows, size_t n, size_t w, const size_t *places, const real *b,
+        const real *c, real *x)
+{
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t e = 0; e < n*w; ++e) {
+            x[places[i]*n*w + e] += b[i*w + e%w]*c[i*n*w + e];
+        }
+    }
+}
+
+#define TURN (2*R(3.14159265358979323846264338327950288L))
+
+/* Angles in (-pi, pi]. */
+INLINE void wrap_turns(size_t rows, size_t n, const size_t *places, real *x)
+{
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t e = 0; e < n; ++e) {
+            real *const at = x + places[i]*n + e;
+            *at += TURN*whole(R(0.5) - *at/TURN);
+        }
+    }
+}
+
+#define TINY R(1e-09)  /* a length below this fraction of the legs' size is none */
 
 /* A quaternion with largest entry 1, so that squares of tiny ones keep their digits; NaN if it is
    zero or its squared length overflows. */
 INLINE void scaled(const real *p, real *to)
 {
-    const real size = larger(larger(magnitude(p[0]), magnitude(p[1])),
-        larger(magnitude(p[2]), magnitude(p[3])));
+    const real size = largest(p, 4);
     const int ok = is_finite(p[0]*p[0] + p[1]*p[1] + p[2]*p[2] + p[3]*p[3]) && size > 0;
     for (size_t i = 0; i < 4; ++i) {
         to[i] = ok ? p[i]/size : R(NAN);
@@ -1275,49 +1503,164 @@ INLINE void unit(const real *p, real *to)
     }
 }
 
-/* Residuals [m, rad] at which iterations stop, and that count as solved. */
-#define CLOSED BY_TYPE(5e-5, 1e-13, 1e-16)
-#define CONVERGED BY_TYPE(1e-4, 1e-9, 1e-9)
-
-INLINE real largest(const real *x, size_t n)
+INLINE void rotation_of_quaternion(const real *a, real *to)
 {
-    real size = 0;
-    for (size_t i = 0; i < n; ++i) {
-        size = magnitude(x[i]) > size ? magnitude(x[i]) : size;
-    }
-    return size;
+    real p[4];
+    scaled(a, p);
+    const real x = p[0], y = p[1], z = p[2], w = p[3];
+    const real xx = x*x, yy = y*y, zz = z*z, ww = w*w, n = xx + yy + zz + ww;
+    const real entries[9] = {
+        (xx + ww - (yy + zz))/n, 2*(x*y - w*z)/n, 2*(x*z + w*y)/n,
+        2*(x*y + w*z)/n, (yy + ww - (xx + zz))/n, 2*(y*z - w*x)/n,
+        2*(x*z - w*y)/n, 2*(y*z + w*x)/n, (zz + ww - (xx + yy))/n
+    };
+    memcpy(to, entries, sizeof entries);
 }
 
-/* Rows of [h^T | gap], h[6][n]. */
-INLINE void fill_rows(size_t n, const real *h, const real *gap, real *a)
+/* NaN for what is no rotation matrix. */
+INLINE void quaternion_of_rotation(const real *a, real *p)
 {
-    for (size_t i = 0; i < n; ++i) {
-        for (size_t j = 0; j < 6; ++j) {
-            a[i*7 + j] = h[j*n + i];
+    const real x = a[0], y = a[4], z = a[8];
+    const real s[3] = {a[7] + a[5], a[2] + a[6], a[3] + a[1]};
+    const real d[3] = {a[7] - a[5], a[2] - a[6], a[3] - a[1]};
+    /* each candidate is four times the quaternion times one of its entries; take the longest */
+    const real candidates[4][4] = {
+        {1 + x - y - z, s[2], s[1], d[0]}, {s[2], 1 - x + y - z, s[0], d[1]},
+        {s[1], s[0], 1 - x - y + z, d[2]}, {d[0], d[1], d[2], 1 + x + y + z}
+    };
+    real most = 0;
+    size_t best = 0;
+    for (size_t i = 0; i < 4; ++i) {
+        const real *const c = candidates[i], n = c[0]*c[0] + c[1]*c[1] + c[2]*c[2] + c[3]*c[3];
+        best = n > most ? i : best;
+        most = n > most ? n : most;
+    }
+    unit(candidates[best], p);
+    if (!all_rotations(a, 1)) {
+        refuse(4, p);
+    }
+}
+
+INLINE void quaternion_of_rpy(const real *a, real *p)
+{
+    const real cx = cosine(a[0]/2), cy = cosine(a[1]/2), cz = cosine(a[2]/2);
+    const real sx = sine(a[0]/2), sy = sine(a[1]/2), sz = sine(a[2]/2);
+    p[0] = sx*cy*cz - cx*sy*sz;
+    p[1] = cx*sy*cz + sx*cy*sz;
+    p[2] = cx*cy*sz - sx*sy*cz;
+    p[3] = cx*cy*cz + sx*sy*sz;
+}
+
+INLINE void quaternion_rate(const real *p, const real *b, real *x)
+{
+    x[0] = (p[3]*b[0] + b[1]*p[2] - b[2]*p[1])/2;
+    x[1] = (p[3]*b[1] + b[2]*p[0] - b[0]*p[2])/2;
+    x[2] = (p[3]*b[2] + b[0]*p[1] - b[1]*p[0])/2;
+    x[3] = -(p[0]*b[0] + p[1]*b[1] + p[2]*b[2])/2;
+}
+
+/* The quaternion p turned by the rotation vector v, made of length 1. */
+INLINE void turn_quaternion(const real *p, const real *v, real *to)
+{
+    const real half = root(v[0]*v[0] + v[1]*v[1] + v[2]*v[2])/2;
+    const real c = cosine(half), f = magnitude(half) > 0 ? sine(half)/half/2 : R(0.5);
+    const real a[3] = {f*v[0], f*v[1], f*v[2]};
+    real b[4];
+    unit(p, b);
+    to[0] = c*b[0] + b[3]*a[0] + a[1]*b[2] - a[2]*b[1];
+    to[1] = c*b[1] + b[3]*a[1] + a[2]*b[0] - a[0]*b[2];
+    to[2] = c*b[2] + b[3]*a[2] + a[0]*b[1] - a[1]*b[0];
+    to[3] = c*b[3] - a[0]*b[0] - a[1]*b[1] - a[2]*b[2];
+}
+
+/* The shortest rotation vector that turns the quaternion a to b. */
+INLINE void turn_between(const real *a, const real *b, real *v)
+{
+    real p[4], q[4];
+    unit(a, p);
+    unit(b, q);
+    v[0] = p[3]*q[0] - q[3]*p[0] - (q[1]*p[2] - q[2]*p[1]);
+    v[1] = p[3]*q[1] - q[3]*p[1] - (q[2]*p[0] - q[0]*p[2]);
+    v[2] = p[3]*q[2] - q[3]*p[2] - (q[0]*p[1] - q[1]*p[0]);
+    const real c = p[0]*q[0] + p[1]*q[1] + p[2]*q[2] + p[3]*q[3];
+    const real s = root(v[0]*v[0] + v[1]*v[1] + v[2]*v[2]);
+    const real factor = (c < 0 ? -2 : 2)*(s > 0 ? angle(s, magnitude(c))/s : R(1));
+    for (size_t i = 0; i < 3; ++i) {
+        v[i] *= factor;
+    }
+}
+
+#define STEADY BY_TYPE(5e-5, 1e-11, 1e-13)  /* a step [m, rad] below which q has converged */
+
+/* Steps of q that close the gaps of the legs to first order; returns the largest entry, NaN
+   where there is no step.  gap[legs][rows], jacobian[legs][rows][n], step[legs][n]. */
+INLINE real newton_step(size_t legs, size_t rows, size_t n, const real *gap, const real *jacobian,
+        real *step)
+{
+    real singular = 0;
+    for (size_t leg = 0; leg < legs; ++leg) {
+        real a[BIG*(BIG + 1)];
+        for (size_t i = 0; i < rows; ++i) {
+            memcpy(a + i*(n + 1), jacobian + (leg*rows + i)*n, n*sizeof *a);
+            a[i*(n + 1) + n] = gap[leg*rows + i];
         }
-        a[i*7 + 6] = gap[i];
+        if (rows == n) {
+            solve_one(n, n + 1, a, step + leg*n, &singular);
+        } else {
+            least_squares(rows, n, a, step + leg*n);
+        }
     }
+    return singular > 0 || !all_finite(step, legs*n) ? R(NAN) : largest(step, legs*n);
 }
+
+/* Sign of the determinant of the rows which[n] of a Jacobian with n columns; 0: it is zero, or
+   not a number.  It changes only where a leg is singular, and tells assembly branches apart. */
+static int side(size_t n, const size_t *which, const real *jacobian)
+{
+    real a[BIG*BIG];
+    int sign = 1;
+    for (size_t i = 0; i < n*n; ++i) {
+        a[i] = jacobian[which[i/n]*n + i%n];
+    }
+    for (size_t p = 0; p < n; ++p) {
+        size_t best = p;
+        for (size_t i = p + 1; i < n; ++i) {
+            best = magnitude(a[i*n + p]) > magnitude(a[best*n + p]) ? i : best;
+        }
+        sign = best == p ? sign : -sign;
+        for (size_t j = p; j < n; ++j) {
+            const real moved = a[best*n + j];
+            a[best*n + j] = a[p*n + j];
+            a[p*n + j] = moved;
+        }
+        const real pivot = a[p*n + p];
+        if (!(magnitude(pivot) > 0)) {
+            return 0;
+        }
+        sign = pivot > 0 ? sign : -sign;
+        for (size_t i = p + 1; i < n; ++i) {
+            eliminate(n - p, a[i*n + p]/pivot, a + p*n + p, a + i*n + p);
+        }
+    }
+    return sign;
+}
+
+/* Residuals [m, rad] at which searches stop, with steps that are halved and without, and that count
+   as solved. */
+#define CLOSED BY_TYPE(5e-5, 1e-13, 1e-16)
+#define MET BY_TYPE(5e-6, 1e-14, 1e-17)
+#define CONVERGED BY_TYPE(1e-4, 1e-09, 1e-09)
 
 /* X moved by a part of a small step: the quaternion turns by its angular part. */
 static void moved(const real *X, const real *step, real part, real *to)
 {
-    const real *const p = X + 3, *const v = step + 3;
-    const real half = part*root(v[0]*v[0] + v[1]*v[1] + v[2]*v[2])/2;
-    const real c = cosine(half), f = magnitude(half) > 0 ? part*sine(half)/half/2 : part/2;
-    const real a[3] = {f*v[0], f*v[1], f*v[2]};
-    real b[4];
-    unit(p, b);
-    for (size_t i = 0; i < 3; ++i) {
-        to[i] = X[i] + part*step[i];
+    enum { Q = 3 };
+    const real turn[3] = {part*step[Q], part*step[Q + 1], part*step[Q + 2]};
+    for (size_t i = 0; i < 6; ++i) {
+        const size_t e = i + (i > Q + 2);
+        to[e] = X[e] + part*step[i];
     }
-    to[3] = c*b[0] + b[3]*a[0] + a[1]*b[2] - a[2]*b[1];
-    to[4] = c*b[1] + b[3]*a[1] + a[2]*b[0] - a[0]*b[2];
-    to[5] = c*b[2] + b[3]*a[2] + a[0]*b[1] - a[1]*b[0];
-    to[6] = c*b[3] - a[0]*b[0] - a[1]*b[1] - a[2]*b[2];
-    for (size_t i = 7; i < 7; ++i) {
-        to[i] = X[i] + part*step[i - 1];
-    }
+    turn_quaternion(X + Q, turn, to + Q);
 }
 
 /* ---- closure_rrrrrr: 1110 mul, 672 add, 0 div, 0 sqrt, 60 trig, every leg counted ---- */
@@ -1655,63 +1998,6 @@ INLINE void closure_rrrrrr_run(const prepared *m, size_t w, const real *X, const
     }
 }
 
-/* ---- displacements without a closed form: Newton's iteration on the loop closure ---- */
-
-#define STEADY BY_TYPE(5e-5, 1e-11, 1e-13)  /* a step [m, rad] below which q has converged */
-
-/* Steps of q that close the gaps of the legs to first order; returns the largest entry, NaN
-   where there is no step.  gap[legs][rows], jacobian[legs][rows][n], step[legs][n]. */
-INLINE real newton_step(size_t legs, size_t rows, size_t n, const real *gap, const real *jacobian,
-        real *step)
-{
-    real singular = 0;
-    for (size_t leg = 0; leg < legs; ++leg) {
-        real a[BIG*(BIG + 1)];
-        for (size_t i = 0; i < rows; ++i) {
-            memcpy(a + i*(n + 1), jacobian + (leg*rows + i)*n, n*sizeof *a);
-            a[i*(n + 1) + n] = gap[leg*rows + i];
-        }
-        if (rows == n) {
-            solve_one(n, n + 1, a, step + leg*n, &singular);
-        } else {
-            least_squares(rows, n, a, step + leg*n);
-        }
-    }
-    return singular > 0 || !all_finite(step, legs*n) ? R(NAN) : largest(step, legs*n);
-}
-
-/* Sign of the determinant of the rows which[n] of a Jacobian with n columns; 0: it is zero, or
-   not a number.  It changes only where a leg is singular, and tells assembly branches apart. */
-static int side(size_t n, const size_t *which, const real *jacobian)
-{
-    real a[BIG*BIG];
-    int sign = 1;
-    for (size_t i = 0; i < n*n; ++i) {
-        a[i] = jacobian[which[i/n]*n + i%n];
-    }
-    for (size_t p = 0; p < n; ++p) {
-        size_t best = p;
-        for (size_t i = p + 1; i < n; ++i) {
-            best = magnitude(a[i*n + p]) > magnitude(a[best*n + p]) ? i : best;
-        }
-        sign = best == p ? sign : -sign;
-        for (size_t j = p; j < n; ++j) {
-            const real moved = a[best*n + j];
-            a[best*n + j] = a[p*n + j];
-            a[p*n + j] = moved;
-        }
-        const real pivot = a[p*n + p];
-        if (!(magnitude(pivot) > 0)) {
-            return 0;
-        }
-        sign = pivot > 0 ? sign : -sign;
-        for (size_t i = p + 1; i < n; ++i) {
-            subtract(n - p, a[i*n + p]/pivot, a + p*n + p, a + i*n + p);
-        }
-    }
-    return sign;
-}
-
 /* Close the 6 legs of type rrrrrr from the guess in q, by at most 60 steps of at most 0.5;
    returns whether the iteration converged on home's branch. */
 static int close_rrrrrr(const prepared *m, const real *X, real *q)
@@ -1720,26 +2006,25 @@ static int close_rrrrrr(const prepared *m, const real *X, real *q)
     static const size_t rows[] = {0, 1, 2, 3, 4};
     static const int home[] = {1, 1, 1, 1, 1, 1};  /* signs of the determinants */
     enum { LEGS = 6, ROWS = 5, N = 5 };
-    real gap_rrrrrr[LEGS*ROWS] = { 0 }, jacobian_rrrrrr[LEGS*ROWS*N] = { 0 };
-    real step[LEGS*N], size = 1;
+    real gap[LEGS*ROWS] = {0}, jacobian[LEGS*ROWS*N] = {0}, step[LEGS*N], size = 1;
     for (int steps = 0; steps < 60 && size > STEADY; ++steps) {
         verdict values, *const t = &values;
         int code;
         start(1, t);
-        closure_rrrrrr_run(m, 1, X, q, gap_rrrrrr, jacobian_rrrrrr, t);
-        check(sizeof gap_rrrrrr/sizeof *gap_rrrrrr, 1, gap_rrrrrr, t->overflow);
-        check(sizeof jacobian_rrrrrr/sizeof *jacobian_rrrrrr, 1, jacobian_rrrrrr, t->overflow);
+        closure_rrrrrr_run(m, 1, X, q, gap, jacobian, t);
+        check(LEGS*ROWS, 1, gap, t->overflow);
+        check(LEGS*ROWS*N, 1, jacobian, t->overflow);
         judge(t, 1, &code);
-        if (code != HEXAPOD_6X6R_OK) {
+        if (code != OK) {
             return 0;
         }
-        size = newton_step(LEGS, ROWS, N, gap_rrrrrr, jacobian_rrrrrr, step);
-        for (size_t i = 0; i < sizeof step/sizeof *step; ++i) {
+        size = newton_step(LEGS, ROWS, N, gap, jacobian, step);
+        for (size_t i = 0; i < LEGS*N; ++i) {
             q[places[i]] += size > R(0.5) ? R(0.5)/size*step[i] : step[i];
         }
     }
     for (size_t leg = 0; leg < LEGS && size <= STEADY; ++leg) {
-        if (side(N, rows, jacobian_rrrrrr + leg*ROWS*N) != home[leg]) {
+        if (side(N, rows, jacobian + leg*ROWS*N) != home[leg]) {
             return 0;
         }
     }
@@ -1752,7 +2037,6 @@ static void close_loops(const prepared *m, size_t w, const real *X, const real *
         verdict *t)
 {
     static const size_t turning[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29};
-    const real turn = 2*R(3.14159265358979323846264338327950288L);
     for (size_t k = 0; k < w; ++k) {
         real x[7], q[30];
         for (size_t e = 0; e < 7; ++e) {
@@ -1763,14 +2047,13 @@ static void close_loops(const prepared *m, size_t w, const real *X, const real *
         if (!(t->invalid[k] > 0)) {
             t->diverged[k] += UNLESS(close_rrrrrr(m, x, q));
         }
-        for (size_t e = 0; e < 30; ++e) {
-            q[turning[e]] += turn*whole(R(0.5) - q[turning[e]]/turn);
-        }
+        wrap_turns(30, 1, turning, q);
         for (size_t e = 0; e < 30; ++e) {
             joints[e*w + k] = q[e];
         }
     }
 }
+
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
@@ -3512,26 +3795,6 @@ INLINE void dynamics_run(const prepared *m, size_t w, const real *X, const real 
     dynamics_after(m, w, s, M, Z);
 }
 
-INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real *q0, const real
-    *V, real *M, real *Z, real *H, int *code)
-{
-    real X_in[7*LANES], V_in[6*LANES], joints[30*LANES], M_of[36*LANES], Z_of[6*LANES],
-        H_of[36*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    X = take(7, w, X, X_in, t);
-    V = take(6, w, V, V_in, t);
-    close_loops(m, w, X, q0, joints, t);
-    dynamics_run(m, w, X, V, joints, M_of, Z_of, H_of, t);
-    check(36, w, M_of, t->overflow);
-    check(6, w, Z_of, t->overflow);
-    check(36, w, H_of, t->overflow);
-    judge(t, w, code);
-    deliver(M_of, 36, w, code, M);
-    deliver(Z_of, 6, w, code, Z);
-    deliver(H_of, 36, w, code, H);
-}
-
 /* ---- M: 7275 mul, 5289 add, 30 div, 30 sqrt, 60 trig, every leg counted ---- */
 typedef struct {
     real R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES], R_yy[LANES], R_yz[LANES], R_zx[LANES],
@@ -4670,19 +4933,6 @@ INLINE void M_run(const prepared *m, size_t w, const real *X, const real *joints
     M_after(m, w, s, M);
 }
 
-INLINE void M_any(const prepared *m, size_t w, const real *X, const real *q0, real *M, int *code)
-{
-    real X_in[7*LANES], joints[30*LANES], M_of[36*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    X = take(7, w, X, X_in, t);
-    close_loops(m, w, X, q0, joints, t);
-    M_run(m, w, X, joints, M_of, t);
-    check(36, w, M_of, t->overflow);
-    judge(t, w, code);
-    deliver(M_of, 36, w, code, M);
-}
-
 /* ---- Z: 5337 mul, 3972 add, 30 div, 30 sqrt, 60 trig, every leg counted ---- */
 typedef struct {
     real R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES], R_yy[LANES], R_yz[LANES], R_zx[LANES],
@@ -5698,21 +5948,6 @@ INLINE void Z_run(const prepared *m, size_t w, const real *X, const real *V, con
     Z_after(w, s, Z);
 }
 
-INLINE void Z_any(const prepared *m, size_t w, const real *X, const real *q0, const real *V, real
-    *Z, int *code)
-{
-    real X_in[7*LANES], V_in[6*LANES], joints[30*LANES], Z_of[6*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    X = take(7, w, X, X_in, t);
-    V = take(6, w, V, V_in, t);
-    close_loops(m, w, X, q0, joints, t);
-    Z_run(m, w, X, V, joints, Z_of, t);
-    check(6, w, Z_of, t->overflow);
-    judge(t, w, code);
-    deliver(Z_of, 6, w, code, Z);
-}
-
 /* ---- H: 2190 mul, 1272 add, 30 div, 30 sqrt, 60 trig, every leg counted ---- */
 typedef struct {
     real R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES], R_yy[LANES], R_yz[LANES], R_zx[LANES],
@@ -6139,19 +6374,6 @@ INLINE void H_run(const prepared *m, size_t w, const real *X, const real *joints
             H_place_rrrrrr(w, &results_rrrrrr, leg, 0, H, t);
         }
     }
-}
-
-INLINE void H_any(const prepared *m, size_t w, const real *X, const real *q0, real *H, int *code)
-{
-    real X_in[7*LANES], joints[30*LANES], H_of[36*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    X = take(7, w, X, X_in, t);
-    close_loops(m, w, X, q0, joints, t);
-    H_run(m, w, X, joints, H_of, t);
-    check(36, w, H_of, t->overflow);
-    judge(t, w, code);
-    deliver(H_of, 36, w, code, H);
 }
 
 /* ---- required: 5649 mul, 4221 add, 30 div, 30 sqrt, 60 trig, every leg counted ---- */
@@ -7301,20 +7523,6 @@ INLINE void inverse_kinematics_run(size_t w, const real *joints, real *q)
     }
 }
 
-INLINE void inverse_kinematics_any(const prepared *m, size_t w, const real *X, const real *q0,
-    real *q, int *code)
-{
-    real X_in[7*LANES], joints[30*LANES], q_of[30*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    X = take(7, w, X, X_in, t);
-    close_loops(m, w, X, q0, joints, t);
-    inverse_kinematics_run(w, joints, q_of);
-    check(30, w, q_of, t->overflow);
-    judge(t, w, code);
-    deliver(q_of, 30, w, code, q);
-}
-
 /* ---- joint_rates: 2304 mul, 1392 add, 30 div, 30 sqrt, 60 trig, every leg counted ---- */
 typedef struct {
     real R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES], R_yy[LANES], R_yz[LANES], R_zx[LANES],
@@ -7769,21 +7977,6 @@ INLINE void joint_rates_run(const prepared *m, size_t w, const real *X, const re
             joint_rates_place_rrrrrr(w, &results_rrrrrr, leg, 0, qd, t);
         }
     }
-}
-
-INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const real *q0, const real
-    *V, real *rates, int *code)
-{
-    real X_in[7*LANES], V_in[6*LANES], joints[30*LANES], qd_of[30*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    X = take(7, w, X, X_in, t);
-    V = take(6, w, V, V_in, t);
-    close_loops(m, w, X, q0, joints, t);
-    joint_rates_run(m, w, X, V, joints, qd_of, t);
-    check(30, w, qd_of, t->overflow);
-    judge(t, w, code);
-    deliver(qd_of, 30, w, code, rates);
 }
 
 /* ---- joint_accelerations: 3630 mul, 2382 add, 30 div, 30 sqrt, 60 trig, every leg counted ----
@@ -8456,22 +8649,6 @@ INLINE void joint_accelerations_run(const prepared *m, size_t w, const real *X, 
             joint_accelerations_place_rrrrrr(w, &results_rrrrrr, leg, 0, qdd, t);
         }
     }
-}
-
-INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, const real *q0,
-    const real *V, const real *A, real *accelerations, int *code)
-{
-    real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], joints[30*LANES], qdd_of[30*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    X = take(7, w, X, X_in, t);
-    V = take(6, w, V, V_in, t);
-    A = take(6, w, A, A_in, t);
-    close_loops(m, w, X, q0, joints, t);
-    joint_accelerations_run(m, w, X, V, A, joints, qdd_of, t);
-    check(30, w, qdd_of, t->overflow);
-    judge(t, w, code);
-    deliver(qdd_of, 30, w, code, accelerations);
 }
 
 /* ---- legs: 5502 mul, 4050 add, 30 div, 30 sqrt, 60 trig, every leg counted ---- */
@@ -10138,390 +10315,593 @@ INLINE void condition_run(const prepared *m, size_t w, const real *X, const real
     condition_after(m, w, s, lengths);
 }
 
-/* ---- forces and accelerations ---- */
+/* ---- what users call, as steps over these ---- */
 
-INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, const real *q0, const real *V,
-        const real *A, const real *wrench, real *tau, int *code)
+INLINE void M_any(const prepared *m, size_t w, const real *X, const real *q0, real *M_out, int
+    *code)
 {
-    static const size_t rows[] = {0, 1, 2, 3, 4, 5};  /* on which drives act */
-    enum { N = 6, PADDED = 8 };
-    const size_t stride = w == 1 ? PADDED : N + 1;
-    real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], wrench_in[6*LANES];
-    real force[6*LANES], H[36*LANES], a[N*PADDED*LANES], x[N*LANES];
-    real joints[30*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    X = take(7, w, X, X_in, t);
-    V = take(6, w, V, V_in, t);
-    A = take(6, w, A, A_in, t);
-    close_loops(m, w, X, q0, joints, t);
-    required_run(m, w, X, V, A, joints, force, H, t);
-    if (wrench) {
-        add_wrench(take(6, w, wrench, wrench_in, t), -1, w, force);
-    }
-    for (size_t i = 0; i < N; ++i) {
-        for (size_t j = 0; j < stride; ++j) {
-            for (size_t k = 0; k < w; ++k) {
-                a[(i*stride + j)*w + k] = j < 6 ? H[(rows[i]*6 + j)*w + k]
-                    : j == N ? force[rows[i]*w + k] : 0;
-            }
-        }
-    }
-    solve(N, stride, w, a, x, t->singular);
-    check(N, w, x, t->overflow);
-    judge(t, w, code);
-    deliver(x, 6, w, code, tau);
+    real X_in[7*LANES], joints[30*LANES], M[36*LANES];
+    verdict why;
+    start(w, &why);
+    X = side_by_side(7, w, X, X_in, why.invalid);
+    close_loops(m, w, X, q0, joints, &why);
+    M_run(m, w, X, joints, M, &why);
+    check(36, w, M, why.overflow);
+    judge(&why, w, code);
+    deliver(M, 36, w, code, M_out);
 }
 
-INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, const real *q0, const real *V,
-        const real *tau, const real *wrench, real *A, int *code)
+INLINE void Z_any(const prepared *m, size_t w, const real *X, const real *q0, const real *V, real
+    *Z_out, int *code)
 {
-    enum { N = 6, PADDED = 8 };
-    const size_t stride = w == 1 ? PADDED : N + 1;
-    real X_in[7*LANES], V_in[6*LANES], tau_in[6*LANES], wrench_in[6*LANES];
-    real M[36*LANES], Z[6*LANES], H[36*LANES];
-    real force[6*LANES], a[N*PADDED*LANES], x[N*LANES];
-    real joints[30*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    X = take(7, w, X, X_in, t);
-    V = take(6, w, V, V_in, t);
-    tau = take(6, w, tau, tau_in, t);
-    close_loops(m, w, X, q0, joints, t);
-    dynamics_run(m, w, X, V, joints, M, Z, H, t);
+    real X_in[7*LANES], V_in[6*LANES], joints[30*LANES], Z[6*LANES];
+    verdict why;
+    start(w, &why);
+    X = side_by_side(7, w, X, X_in, why.invalid);
+    V = side_by_side(6, w, V, V_in, why.invalid);
+    close_loops(m, w, X, q0, joints, &why);
+    Z_run(m, w, X, V, joints, Z, &why);
+    check(6, w, Z, why.overflow);
+    judge(&why, w, code);
+    deliver(Z, 6, w, code, Z_out);
+}
+
+INLINE void H_any(const prepared *m, size_t w, const real *X, const real *q0, real *H_out, int
+    *code)
+{
+    real X_in[7*LANES], joints[30*LANES], H[36*LANES];
+    verdict why;
+    start(w, &why);
+    X = side_by_side(7, w, X, X_in, why.invalid);
+    close_loops(m, w, X, q0, joints, &why);
+    H_run(m, w, X, joints, H, &why);
+    check(36, w, H, why.overflow);
+    judge(&why, w, code);
+    deliver(H, 36, w, code, H_out);
+}
+
+INLINE void inverse_kinematics_any(const prepared *m, size_t w, const real *X, const real *q0,
+    real *q_out, int *code)
+{
+    real X_in[7*LANES], joints[30*LANES], q[30*LANES];
+    verdict why;
+    start(w, &why);
+    X = side_by_side(7, w, X, X_in, why.invalid);
+    close_loops(m, w, X, q0, joints, &why);
+    inverse_kinematics_run(w, joints, q);
+    check(30, w, q, why.overflow);
+    judge(&why, w, code);
+    deliver(q, 30, w, code, q_out);
+}
+
+INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const real *q0, const real
+    *V, real *qd_out, int *code)
+{
+    real X_in[7*LANES], V_in[6*LANES], joints[30*LANES], qd[30*LANES];
+    verdict why;
+    start(w, &why);
+    X = side_by_side(7, w, X, X_in, why.invalid);
+    V = side_by_side(6, w, V, V_in, why.invalid);
+    close_loops(m, w, X, q0, joints, &why);
+    joint_rates_run(m, w, X, V, joints, qd, &why);
+    check(30, w, qd, why.overflow);
+    judge(&why, w, code);
+    deliver(qd, 30, w, code, qd_out);
+}
+
+INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, const real *q0,
+    const real *V, const real *A, real *qdd_out, int *code)
+{
+    real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], joints[30*LANES], qdd[30*LANES];
+    verdict why;
+    start(w, &why);
+    X = side_by_side(7, w, X, X_in, why.invalid);
+    V = side_by_side(6, w, V, V_in, why.invalid);
+    A = side_by_side(6, w, A, A_in, why.invalid);
+    close_loops(m, w, X, q0, joints, &why);
+    joint_accelerations_run(m, w, X, V, A, joints, qdd, &why);
+    check(30, w, qdd, why.overflow);
+    judge(&why, w, code);
+    deliver(qdd, 30, w, code, qdd_out);
+}
+
+INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real *q0, const real
+    *V, real *M_out, real *Z_out, real *H_out, int *code)
+{
+    real X_in[7*LANES], V_in[6*LANES], joints[30*LANES], M[36*LANES], Z[6*LANES], H[36*LANES];
+    verdict why;
+    start(w, &why);
+    X = side_by_side(7, w, X, X_in, why.invalid);
+    V = side_by_side(6, w, V, V_in, why.invalid);
+    close_loops(m, w, X, q0, joints, &why);
+    dynamics_run(m, w, X, V, joints, M, Z, H, &why);
+    check(36, w, M, why.overflow);
+    check(6, w, Z, why.overflow);
+    check(36, w, H, why.overflow);
+    judge(&why, w, code);
+    deliver(M, 36, w, code, M_out);
+    deliver(Z, 6, w, code, Z_out);
+    deliver(H, 36, w, code, H_out);
+}
+
+INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, const real *q0, const
+    real *V, const real *A, const real *wrench, real *tau_out, int *code)
+{
+    real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], wrench_in[6*LANES], joints[30*LANES],
+        required[6*LANES], H[36*LANES], subtract_2[6*LANES], tau[6*LANES], work[48*LANES];
+    verdict why;
+    start(w, &why);
+    X = side_by_side(7, w, X, X_in, why.invalid);
+    V = side_by_side(6, w, V, V_in, why.invalid);
+    A = side_by_side(6, w, A, A_in, why.invalid);
+    wrench = optional(6, w, wrench, 0, wrench_in, why.invalid);
+    close_loops(m, w, X, q0, joints, &why);
+    required_run(m, w, X, V, A, joints, required, H, &why);
+    const real *const extend_1 = wrench;
+    for (size_t i = 0; i < 6*w; ++i) {
+        subtract_2[i] = required[i] - extend_1[i];
+    }
+    set_matrix(6, w, H, work);
+    solve(6, w, subtract_2, work, tau, why.singular);
+    check(6, w, tau, why.overflow);
+    judge(&why, w, code);
+    deliver(tau, 6, w, code, tau_out);
+}
+
+INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, const real *q0, const
+    real *V, const real *tau, const real *wrench, real *A_out, int *code)
+{
+    real X_in[7*LANES], V_in[6*LANES], tau_in[6*LANES], wrench_in[6*LANES], joints[30*LANES],
+        M[36*LANES], Z[6*LANES], H[36*LANES], times_1[6*LANES] = {0}, add_3[6*LANES],
+        subtract_4[6*LANES], A[6*LANES], work[48*LANES];
+    verdict why;
+    start(w, &why);
+    X = side_by_side(7, w, X, X_in, why.invalid);
+    V = side_by_side(6, w, V, V_in, why.invalid);
+    tau = side_by_side(6, w, tau, tau_in, why.invalid);
+    wrench = optional(6, w, wrench, 0, wrench_in, why.invalid);
+    close_loops(m, w, X, q0, joints, &why);
+    dynamics_run(m, w, X, V, joints, M, Z, H, &why);
+    product(6, 6, 1, w, H, tau, times_1);
+    const real *const extend_2 = wrench;
+    for (size_t i = 0; i < 6*w; ++i) {
+        add_3[i] = times_1[i] + extend_2[i];
+    }
+    for (size_t i = 0; i < 6*w; ++i) {
+        subtract_4[i] = add_3[i] - Z[i];
+    }
+    set_matrix(6, w, M, work);
+    solve(6, w, subtract_4, work, A, why.singular);
+    check(6, w, A, why.overflow);
+    judge(&why, w, code);
+    deliver(A, 6, w, code, A_out);
+}
+
+INLINE void complete_acceleration_any(const real *A, real *completed_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(6, 1, A, why.invalid);
+    const real *const completed = A;
+    check(6, 1, completed, why.overflow);
+    judge(&why, 1, code);
+    deliver(completed, 6, 1, code, completed_out);
+}
+
+INLINE void leg_reactions_any(const prepared *m, const real *X, const real *q0, const real *V,
+    const real *A, const real *wrench, real *forces_out, int *code)
+{
+    static const size_t places_0[] = {0, 1, 2, 3, 4, 5};
+    real wrench_in[6], joints[30] = {0}, required[6] = {0}, H[36] = {0}, subtract_2[6] = {0},
+        solve_3[6] = {0}, leg_force[36] = {0}, drive[36] = {0}, forces[36] = {0}, work[48];
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    check(6, 1, V, why.invalid);
+    check(6, 1, A, why.invalid);
+    wrench = optional(6, 1, wrench, 0, wrench_in, why.invalid);
+    close_loops(m, 1, X, q0, joints, &why);
+    required_run(m, 1, X, V, A, joints, required, H, &why);
+    const real *const extend_1 = wrench;
     for (size_t i = 0; i < 6; ++i) {
-        for (size_t k = 0; k < w; ++k) {
-            real sum = -Z[i*w + k];
-            for (size_t j = 0; j < 6; ++j) {
-                sum += H[(i*6 + j)*w + k]*tau[j*w + k];
-            }
-            force[i*w + k] = sum;
-        }
+        subtract_2[i] = required[i] - extend_1[i];
     }
-    if (wrench) {
-        add_wrench(take(6, w, wrench, wrench_in, t), 1, w, force);
+    set_matrix(6, 1, H, work);
+    solve_state(6, subtract_2, work, solve_3, why.singular);
+    legs_run(m, 1, X, V, A, joints, leg_force, drive, &why);
+    for (size_t i = 0; i < 36; ++i) {
+        forces[i] = leg_force[i];
     }
-    memset(a, 0, N*stride*w*sizeof *a);
+    add_forces(6, 6, 1, places_0, solve_3, drive, forces);
+    check(36, 1, forces, why.overflow);
+    judge(&why, 1, code);
+    deliver(forces, 36, 1, code, forces_out);
+}
+
+INLINE void energy_any(const prepared *m, const real *X, const real *q0, const real *V, real
+    *kinetic_out, real *potential_out, int *code)
+{
+    real joints[30] = {0}, M[36] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    check(6, 1, V, why.invalid);
+    close_loops(m, 1, X, q0, joints, &why);
+    M_run(m, 1, X, joints, M, &why);
+    potential_run(m, 1, X, joints, potential_of_potential, &why);
+    half_form(6, 1, V, M, kinetic);
+    const real *const potential = potential_of_potential;
+    check(1, 1, kinetic, why.overflow);
+    check(1, 1, potential, why.overflow);
+    judge(&why, 1, code);
+    deliver(kinetic, 1, 1, code, kinetic_out);
+    deliver(potential, 1, 1, code, potential_out);
+}
+
+INLINE void condition_any(const prepared *m, const real *X, const real *q0, const real *length,
+    real *sigma_out, real *legs_out, int *code)
+{
+    static const size_t places_0[] = {3, 4, 5};
+    real length_in[1], joints[30] = {0}, H[36] = {0}, lengths[2] = {0}, legs[6] = {0}, reach[6] = {0},
+        choose_length_1[1] = {0}, divide_rows_2[36] = {0}, sigma[6] = {0};
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    require_positive(1, 1, length, why.invalid);
+    length = optional(1, 1, length, 0, length_in, why.invalid);
+    close_loops(m, 1, X, q0, joints, &why);
+    condition_run(m, 1, X, joints, H, lengths, legs, reach, &why);
+    for (size_t i = 0; i < 1; ++i) {
+        choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
+            lengths[i] : lengths[1 + i];
+    }
+    for (size_t i = 0; i < 36; ++i) {
+        divide_rows_2[i] = H[i];
+    }
+    divide_rows(3, 6, 1, places_0, choose_length_1, divide_rows_2);
+    singular_values(6, 6, divide_rows_2, sigma);
+    check(6, 1, sigma, why.overflow);
+    check(6, 1, legs, why.overflow);
+    judge(&why, 1, code);
+    deliver(sigma, 6, 1, code, sigma_out);
+    deliver(legs, 6, 1, code, legs_out);
+}
+
+static void mismatch_any(const prepared *m, const real *X, const real *q0, const real *q_actuated,
+    real *gap_out, int *code)
+{
+    static const size_t places_0[] = {1, 6, 11, 16, 21, 26};
+    static const size_t places_1[] = {0, 1, 2, 3, 4, 5};
+    real joints[30] = {0}, q[30] = {0}, take_1[6] = {0}, subtract_2[6] = {0}, gap[6] = {0};
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    check(6, 1, q_actuated, why.invalid);
+    close_loops(m, 1, X, q0, joints, &why);
+    inverse_kinematics_run(1, joints, q);
+    take(6, 1, places_0, q, take_1);
     for (size_t i = 0; i < 6; ++i) {
-        for (size_t k = 0; k < w; ++k) {
-            for (size_t j = 0; j < 6; ++j) {
-                a[(i*stride + j)*w + k] = M[(i*6 + j)*w + k];
-            }
-            a[(i*stride + N)*w + k] = force[i*w + k];
-        }
+        subtract_2[i] = q_actuated[i] - take_1[i];
     }
-    solve(N, stride, w, a, x, t->singular);
-    check(N, w, x, t->overflow);
-    judge(t, w, code);
-    deliver(x, 6, w, code, A);
-}
-
-/* ---- what is made of other functions ---- */
-
-int hexapod_6x6r_complete_acceleration(const prepared *m, const real *X, const real *q0, const real *V, const real *A,
-        const real *wrench, real *completed)
-{
-    const int code = all_finite(A, 6) ? HEXAPOD_6X6R_OK : HEXAPOD_6X6R_INVALID;
-    (void)m;
-    (void)X;
-    (void)q0;
-    (void)V;
-    (void)wrench;
-    deliver(A, 6, 1, &code, completed);
-    return code;
-}
-
-int hexapod_6x6r_leg_reactions(const prepared *m, const real *X, const real *q0, const real *V, const real *A,
-        const real *wrench, real *forces)
-{
-    static const size_t driven[] = {0, 1, 2, 3, 4, 5};  /* leg of each drive */
-    real leg_force[36], drive[36], tau[6];
-    verdict values, *const t = &values;
-    real joints[30];
-    int code = hexapod_6x6r_inverse_kinematics(m, X, q0, joints);
-    if (code == HEXAPOD_6X6R_OK) {
-        code = hexapod_6x6r_inverse_dynamics(m, X, joints, V, A, wrench, tau);
-    }
-    if (code != HEXAPOD_6X6R_OK) {
-        refuse(36, forces);
-        return code;
-    }
-    start(1, t);
-    legs_run(m, 1, X, V, A, joints, leg_force, drive, t);
     for (size_t i = 0; i < 6; ++i) {
-        for (size_t e = 0; e < 6; ++e) {
-            leg_force[6*driven[i] + e] += tau[i]*drive[6*i + e];
-        }
+        gap[i] = subtract_2[i];
     }
-    check(36, 1, leg_force, t->overflow);
-    judge(t, 1, &code);
-    deliver(leg_force, 36, 1, &code, forces);
-    return code;
+    wrap_turns(6, 1, places_1, gap);
+    check(6, 1, gap, why.overflow);
+    judge(&why, 1, code);
+    deliver(gap, 6, 1, code, gap_out);
 }
 
-int hexapod_6x6r_energy(const prepared *m, const real *X, const real *q0, const real *V, real *kinetic, real *potential)
+static void slope_any(const prepared *m, const real *X, const real *q0, real *slope_out, int
+    *code)
 {
-    real M[36], energies[2] = {0, 0};
-    real joints[30];
-    verdict values, *const t = &values;
+    real joints[30] = {0}, slope[36] = {0};
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    close_loops(m, 1, X, q0, joints, &why);
+    H_run(m, 1, X, joints, slope, &why);
+    check(36, 1, slope, why.overflow);
+    judge(&why, 1, code);
+    deliver(slope, 36, 1, code, slope_out);
+}
+
+/* The pose at which the residual vanishes, by Gauss-Newton from a start. */
+static int search_mismatch(const prepared *m, const real *q0, const real *q_actuated, const real *start, real *found)
+{
+    enum { N = 6, NV = 6, TRIALS = 12 };
+    real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
+    real trial[7] = {0}, size = 0;
     int code;
-    start(1, t);
-    check(7, 1, X, t->invalid);
-    check(6, 1, V, t->invalid);
-    close_loops(m, 1, X, q0, joints, t);
-    M_run(m, 1, X, joints, M, t);
-    potential_run(m, 1, X, joints, energies + 1, t);
-    for (size_t i = 0; i < 6; ++i) {
-        for (size_t j = 0; j < 6; ++j) {
-            energies[0] += V[i]*M[i*6 + j]*V[j]/2;
-        }
-    }
-    check(2, 1, energies, t->overflow);
-    judge(t, 1, &code);
-    deliver(energies, 1, 1, &code, kinetic);
-    deliver(energies + 1, 1, 1, &code, potential);
-    return code;
-}
-
-/* Largest residual of the driven joints at X, turns modulo 2 pi; nothing
-   where X is impossible. */
-static int mismatch(const prepared *m, const real *q_actuated, const real *X, const real *q0, real *gap, real *size)
-{
-    static const size_t driven[] = {1, 6, 11, 16, 21, 26};
-    real q[30];
-    int code = hexapod_6x6r_inverse_kinematics(m, X, q0, q);
-    if (code != HEXAPOD_6X6R_OK) {
-        return code;
-    }
-    for (size_t i = 0; i < 6; ++i) {
-        gap[i] = q_actuated[i] - q[driven[i]];
-    }
-    static const size_t turning[] = {0, 1, 2, 3, 4, 5};
-    for (size_t i = 0; i < 6; ++i) {
-        const real turn = 2*R(3.14159265358979323846264338327950288L);
-        gap[turning[i]] -= turn*whole(gap[turning[i]]/turn + R(0.5));
-    }
-    *size = largest(gap, 6);
-    return code;
-}
-
-/* Step that closes the gap: the shortest with [H]^T step = gap. */
-static int close_gap(const prepared *m, const real *X, const real *q0, const real *gap, real *step)
-{
-    real a[BIG*(BIG + 1)], H[36];
-    int code = hexapod_6x6r_H(m, X, q0, H);
-    if (code == HEXAPOD_6X6R_OK) {
-        fill_rows(6, H, gap, a);
-        least_squares(6, 6, a, step);
-    }
-    return code;
-}
-
-int hexapod_6x6r_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0, const real *q0, real *X)
-{
-    enum { GAPS = 6 };
-    real found[7], gap[GAPS] = {0}, trial[7] = {0}, next[GAPS] = {0}, step[6] = {0};
-    real size = 0, next_size = 0;
-    int code = all_finite(q_actuated, 6) ? mismatch(m, q_actuated, X0, q0, gap, &size)
-        : HEXAPOD_6X6R_INVALID;
-    memcpy(found, X0, sizeof found);
-    for (int n = 0; n < 50 && code == HEXAPOD_6X6R_OK && size > CLOSED; ++n) {
-        int better = 0;
+    memcpy(found, start, sizeof trial);
+    mismatch_any(m, found, q0, q_actuated, gap, &code);
+    size = largest(gap, N);
+    for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
+        int better = 0, tried = OK;
         real part = 1;
-        code = close_gap(m, found, q0, gap, step);
-        for (int halving = 0; halving < 12 && code == HEXAPOD_6X6R_OK && !better; ++halving) {
+        slope_any(m, found, q0, slope, &code);
+        if (code != OK) {
+            break;
+        }
+        for (size_t i = 0; i < N; ++i) {
+            for (size_t j = 0; j < NV; ++j) {
+                a[i*(NV + 1) + j] = slope[j*N + i];
+            }
+            a[i*(NV + 1) + NV] = gap[i];
+        }
+        least_squares(N, NV, a, step);
+        for (int halving = 0; halving < TRIALS && !better; ++halving, part /= 2) {
             moved(found, step, part, trial);
-            better = mismatch(m, q_actuated, trial, q0, next, &next_size) == HEXAPOD_6X6R_OK
-                && next_size < size;
-            part /= 2;
+            mismatch_any(m, trial, q0, q_actuated, next, &tried);
+            better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
             break;
         }
-        memcpy(found, trial, sizeof found);
+        memcpy(found, trial, sizeof trial);
         memcpy(gap, next, sizeof gap);
-        size = next_size;
-    }
-    if (code == HEXAPOD_6X6R_OK && !(size < CONVERGED)) {
-        code = HEXAPOD_6X6R_NOT_CONVERGED;
-    }
-    deliver(found, 7, 1, &code, X);
-    return code;
-}
-
-/* ---- conditioning ---- */
-
-/* Turn columns p and q of a[rows][columns] until they are perpendicular; returns whether they were
-   not, to rounding. */
-static int turn_columns(size_t rows, size_t columns, size_t p, size_t q, real *a)
-{
-    real pp = 0, qq = 0, pq = 0;
-    for (size_t i = 0; i < rows; ++i) {
-        pp += a[i*columns + p]*a[i*columns + p];
-        qq += a[i*columns + q]*a[i*columns + q];
-        pq += a[i*columns + p]*a[i*columns + q];
-    }
-    if (!(magnitude(pq) > ROUNDING*root(pp)*root(qq))) {
-        return 0;
-    }
-    const real cotangent = (qq - pp)/(2*pq), size = magnitude(cotangent);
-    const real t = (cotangent < 0 ? -1 : 1)/(size + root(1 + size*size));
-    const real c = 1/root(1 + t*t), s = c*t;
-    for (size_t i = 0; i < rows; ++i) {
-        const real x = a[i*columns + p], y = a[i*columns + q];
-        a[i*columns + p] = c*x - s*y;
-        a[i*columns + q] = s*x + c*y;
-    }
-    return 1;
-}
-
-/* Singular values of a[rows][columns], rows >= columns, in descending order, by one-sided Jacobi
-   rotations; a is overwritten. */
-static void singular_values(size_t rows, size_t columns, real *a, real *sigma)
-{
-    const real size = largest(a, rows*columns);
-    for (size_t i = 0; i < rows*columns && size > 0; ++i) {
-        a[i] /= size;
-    }
-    for (int sweep = 0, turned = 1; sweep < 40 && turned; ++sweep) {
-        turned = 0;
-        for (size_t p = 0; p < columns; ++p) {
-            for (size_t q = p + 1; q < columns; ++q) {
-                turned |= turn_columns(rows, columns, p, q, a);
-            }
+        size = largest(gap, N);
+        code = tried;
+        if (TRIALS == 1 && !(largest(step, NV) > CLOSED/10)) {
+            break;
         }
     }
-    for (size_t j = 0; j < columns; ++j) {
-        real sum = 0;
-        for (size_t i = 0; i < rows; ++i) {
-            sum += a[i*columns + j]*a[i*columns + j];
-        }
-        const real value = size*root(sum);
-        size_t place = j;
-        for (; place > 0 && sigma[place - 1] < value; --place) {
-            sigma[place] = sigma[place - 1];
-        }
-        sigma[place] = value;
-    }
+    return code == OK && !(size < CONVERGED) ? NOT_CONVERGED : code;
 }
 
-/* H and Hk with moment rows divided by the length, and the margins of the legs. */
-static int matrices(const prepared *m, const real *X, const real *q0, real *H, real *pivots)
+
+INLINE void forward_kinematics_any(const prepared *m, const real *q_actuated, const real *X0,
+    const real *q0, real *X_out, int *code)
 {
-    static const size_t moments[] = {3, 4, 5};
-    real lengths[2], reach[6];
-    real joints[30];
-    verdict values, *const t = &values;
-    int code;
-    start(1, t);
-    check(7, 1, X, t->invalid);
-    close_loops(m, 1, X, q0, joints, t);
-    condition_run(m, 1, X, joints, H, lengths, pivots, reach, t);
-    const real length = lengths[0] > R(1e-9)*lengths[1] ? lengths[0] : lengths[1];
-    for (size_t i = 0; i < 3; ++i) {
-        for (size_t j = 0; j < 6; ++j) {
-            H[moments[i]*6 + j] /= length;
-        }
-    }
-    check(36, 1, H, t->overflow);
-    check(6, 1, pivots, t->overflow);
-    judge(t, 1, &code);
-    return code;
+    real X[7] = {0};
+    verdict why;
+    start(1, &why);
+    check(6, 1, q_actuated, why.invalid);
+    check(7, 1, X0, why.invalid);
+    blame(search_mismatch(m, q0, q_actuated, X0, X), &why);
+    check(7, 1, X, why.overflow);
+    judge(&why, 1, code);
+    deliver(X, 7, 1, code, X_out);
 }
 
-int hexapod_6x6r_condition(const prepared *m, const real *X, const real *q0, real *sigma, real *legs)
+INLINE void dissipation_any(const real *V, real *dissipation_out, int *code)
 {
-    real H[36], a[36], found[6] = {0}, pivots[6];
-    const int code = matrices(m, X, q0, H, pivots);
-    if (code != HEXAPOD_6X6R_OK) {
-        refuse(6, sigma);
-        refuse(6, legs);
-        return code;
-    }
+    real subtract_1[6] = {0};
+    verdict why;
+    start(1, &why);
+    check(6, 1, V, why.invalid);
     for (size_t i = 0; i < 6; ++i) {
-        for (size_t j = 0; j < 6; ++j) {
-            a[i*6 + j] = H[i*6 + j];
-        }
+        subtract_1[i] = V[i] - V[i];
     }
-    singular_values(6, 6, a, found);
-    memcpy(sigma, found, sizeof found);
-    memcpy(legs, pivots, sizeof pivots);
-    return code;
+    const real *const dissipation = subtract_1;
+    check(1, 1, dissipation, why.overflow);
+    judge(&why, 1, code);
+    deliver(dissipation, 1, 1, code, dissipation_out);
 }
 
-int hexapod_6x6r_rotation(const real *X, real *R)
+INLINE void momentum_any(const prepared *m, size_t w, const real *X, const real *q0, const real
+    *V, real *momentum_out, int *code)
 {
-    real p[4];
-    scaled(X + 3, p);
-    const int code = all_finite(X, 7) && all_finite(p, 4) ? HEXAPOD_6X6R_OK : HEXAPOD_6X6R_INVALID;
-    const real x = p[0], y = p[1], z = p[2], w = p[3];
-    const real xx = x*x, yy = y*y, zz = z*z, ww = w*w, n = xx + yy + zz + ww;
-    const real rows[9] = {
-        (xx + ww - (yy + zz))/n, 2*(x*y - w*z)/n, 2*(x*z + w*y)/n,
-        2*(x*y + w*z)/n, (yy + ww - (xx + zz))/n, 2*(y*z - w*x)/n,
-        2*(x*z - w*y)/n, 2*(y*z + w*x)/n, (zz + ww - (xx + yy))/n
-    };
-    deliver(rows, 9, 1, &code, R);
-    return code;
+    real X_in[7*LANES], V_in[6*LANES], joints[30*LANES], M[36*LANES], momentum[6*LANES] = {0};
+    verdict why;
+    start(w, &why);
+    X = side_by_side(7, w, X, X_in, why.invalid);
+    V = side_by_side(6, w, V, V_in, why.invalid);
+    close_loops(m, w, X, q0, joints, &why);
+    M_run(m, w, X, joints, M, &why);
+    product(6, 6, 1, w, M, V, momentum);
+    check(6, w, momentum, why.overflow);
+    judge(&why, w, code);
+    deliver(momentum, 6, w, code, momentum_out);
 }
 
-/* X of a position and a quaternion of any length; extra coordinates zero. */
-static int with_position(const real *t, const real *p, real *X)
+INLINE void actuator_positions_any(const prepared *m, size_t w, const real *X, const real *q0,
+    real *q_out, int *code)
 {
-    real found[7] = {0};
-    unit(p, found + 3);
-    memcpy(found, t, 3*sizeof *t);
-    const int code = all_finite(found, 7) ? HEXAPOD_6X6R_OK : HEXAPOD_6X6R_INVALID;
-    deliver(found, 7, 1, &code, X);
-    return code;
+    static const size_t places_0[] = {1, 6, 11, 16, 21, 26};
+    real X_in[7*LANES], joints[30*LANES], q_of_inverse_kinematics[30*LANES], q[6*LANES] = {0};
+    verdict why;
+    start(w, &why);
+    X = side_by_side(7, w, X, X_in, why.invalid);
+    close_loops(m, w, X, q0, joints, &why);
+    inverse_kinematics_run(w, joints, q_of_inverse_kinematics);
+    take(6, 1*w, places_0, q_of_inverse_kinematics, q);
+    check(6, w, q, why.overflow);
+    judge(&why, w, code);
+    deliver(q, 6, w, code, q_out);
 }
 
-int hexapod_6x6r_pose(const real *t, const real *R, real *X)
+INLINE void actuator_rates_any(const prepared *m, size_t w, const real *X, const real *q0, const
+    real *V, real *qd_out, int *code)
 {
-    const real x = R[0], y = R[4], z = R[8];
-    const real s[3] = {R[7] + R[5], R[2] + R[6], R[3] + R[1]};
-    const real a[3] = {R[7] - R[5], R[2] - R[6], R[3] - R[1]};
-    /* each candidate is four times the quaternion times one of its entries; take the longest */
-    const real candidates[4][4] = {
-        {1 + x - y - z, s[2], s[1], a[0]}, {s[2], 1 - x + y - z, s[0], a[1]},
-        {s[1], s[0], 1 - x - y + z, a[2]}, {a[0], a[1], a[2], 1 + x + y + z}
-    };
-    real most = 0;
-    size_t best = 0;
-    for (size_t i = 0; i < 4; ++i) {
-        const real *const c = candidates[i], n = c[0]*c[0] + c[1]*c[1] + c[2]*c[2] + c[3]*c[3];
-        best = n > most ? i : best;
-        most = n > most ? n : most;
+    static const size_t places_0[] = {1, 6, 11, 16, 21, 26};
+    real X_in[7*LANES], V_in[6*LANES], joints[30*LANES], qd_of_joint_rates[30*LANES], qd[6*LANES] =
+        {0};
+    verdict why;
+    start(w, &why);
+    X = side_by_side(7, w, X, X_in, why.invalid);
+    V = side_by_side(6, w, V, V_in, why.invalid);
+    close_loops(m, w, X, q0, joints, &why);
+    joint_rates_run(m, w, X, V, joints, qd_of_joint_rates, &why);
+    take(6, 1*w, places_0, qd_of_joint_rates, qd);
+    check(6, w, qd, why.overflow);
+    judge(&why, w, code);
+    deliver(qd, 6, w, code, qd_out);
+}
+
+INLINE void actuator_accelerations_any(const prepared *m, size_t w, const real *X, const real *q0,
+    const real *V, const real *A, real *qdd_out, int *code)
+{
+    static const size_t places_0[] = {1, 6, 11, 16, 21, 26};
+    real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], joints[30*LANES],
+        qdd_of_joint_accelerations[30*LANES], qdd[6*LANES] = {0};
+    verdict why;
+    start(w, &why);
+    X = side_by_side(7, w, X, X_in, why.invalid);
+    V = side_by_side(6, w, V, V_in, why.invalid);
+    A = side_by_side(6, w, A, A_in, why.invalid);
+    close_loops(m, w, X, q0, joints, &why);
+    joint_accelerations_run(m, w, X, V, A, joints, qdd_of_joint_accelerations, &why);
+    take(6, 1*w, places_0, qdd_of_joint_accelerations, qdd);
+    check(6, w, qdd, why.overflow);
+    judge(&why, w, code);
+    deliver(qdd, 6, w, code, qdd_out);
+}
+
+INLINE void power_any(const prepared *m, size_t w, const real *X, const real *q0, const real *V,
+    const real *tau, real *power_out, int *code)
+{
+    real X_in[7*LANES], V_in[6*LANES], tau_in[6*LANES], joints[30*LANES], H[36*LANES],
+        times_1[6*LANES] = {0}, power[1*LANES] = {0};
+    verdict why;
+    start(w, &why);
+    X = side_by_side(7, w, X, X_in, why.invalid);
+    V = side_by_side(6, w, V, V_in, why.invalid);
+    tau = side_by_side(6, w, tau, tau_in, why.invalid);
+    close_loops(m, w, X, q0, joints, &why);
+    H_run(m, w, X, joints, H, &why);
+    product(6, 6, 1, w, H, tau, times_1);
+    inner(6, w, times_1, V, power);
+    check(1, w, power, why.overflow);
+    judge(&why, w, code);
+    deliver(power, 1, w, code, power_out);
+}
+
+INLINE void rotation_any(const real *X, real *R_out, int *code)
+{
+    real R[9] = {0};
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    const real *const take_1 = X + 3;
+    rotation_of_quaternion(take_1, R);
+    check(9, 1, R, why.overflow);
+    judge(&why, 1, code);
+    deliver(R, 9, 1, code, R_out);
+}
+
+INLINE void pose_any(const real *t, const real *R, real *X_out, int *code)
+{
+    real quaternion_of_rotation_1[4] = {0}, join_2[7] = {0};
+    verdict why;
+    start(1, &why);
+    check(3, 1, t, why.invalid);
+    check(9, 1, R, why.invalid);
+    quaternion_of_rotation(R, quaternion_of_rotation_1);
+    beside(1, 3, 4, t, quaternion_of_rotation_1, join_2);
+    const real *const X = join_2;
+    check(7, 1, X, why.overflow);
+    judge(&why, 1, code);
+    deliver(X, 7, 1, code, X_out);
+}
+
+INLINE void X_dot_any(const real *X, const real *V, real *X_dot_out, int *code)
+{
+    real quaternion_rate_3[4] = {0}, X_dot[7] = {0};
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    check(6, 1, V, why.invalid);
+    const real *const take_1 = V + 3;
+    const real *const take_2 = X + 3;
+    quaternion_rate(take_2, take_1, quaternion_rate_3);
+    const real *const take_4 = V;
+    beside(1, 3, 4, take_4, quaternion_rate_3, X_dot);
+    check(7, 1, X_dot, why.overflow);
+    judge(&why, 1, code);
+    deliver(X_dot, 7, 1, code, X_dot_out);
+}
+
+INLINE void pose_from_rpy_any(const real *t, const real *rpy, real *X_out, int *code)
+{
+    real quaternion_of_rpy_1[4] = {0}, join_2[7] = {0};
+    verdict why;
+    start(1, &why);
+    check(3, 1, t, why.invalid);
+    check(3, 1, rpy, why.invalid);
+    quaternion_of_rpy(rpy, quaternion_of_rpy_1);
+    beside(1, 3, 4, t, quaternion_of_rpy_1, join_2);
+    const real *const X = join_2;
+    check(7, 1, X, why.overflow);
+    judge(&why, 1, code);
+    deliver(X, 7, 1, code, X_out);
+}
+
+INLINE void retract_any(const real *X, const real *step, real *X_moved_out, int *code)
+{
+    real turn_quaternion_5[4] = {0}, add_6[3] = {0}, X_moved[7] = {0};
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    check(6, 1, step, why.invalid);
+    const real *const take_1 = X;
+    const real *const take_2 = X + 3;
+    const real *const take_3 = step;
+    const real *const take_4 = step + 3;
+    turn_quaternion(take_2, take_4, turn_quaternion_5);
+    for (size_t i = 0; i < 3; ++i) {
+        add_6[i] = take_1[i] + take_3[i];
     }
-    if (!all_rotations(R, 1)) {
-        refuse(7, X);
-        return HEXAPOD_6X6R_INVALID;
+    beside(1, 3, 4, add_6, turn_quaternion_5, X_moved);
+    check(7, 1, X_moved, why.overflow);
+    judge(&why, 1, code);
+    deliver(X_moved, 7, 1, code, X_moved_out);
+}
+
+INLINE void difference_any(const real *X0, const real *X1, real *step_out, int *code)
+{
+    real turn_between_5[3] = {0}, subtract_6[3] = {0}, step[6] = {0};
+    verdict why;
+    start(1, &why);
+    check(7, 1, X0, why.invalid);
+    check(7, 1, X1, why.invalid);
+    const real *const take_1 = X0;
+    const real *const take_2 = X0 + 3;
+    const real *const take_3 = X1;
+    const real *const take_4 = X1 + 3;
+    turn_between(take_2, take_4, turn_between_5);
+    for (size_t i = 0; i < 3; ++i) {
+        subtract_6[i] = take_3[i] - take_1[i];
     }
-    return with_position(t, candidates[best], X);
+    beside(1, 3, 3, subtract_6, turn_between_5, step);
+    check(6, 1, step, why.overflow);
+    judge(&why, 1, code);
+    deliver(step, 6, 1, code, step_out);
 }
 
-int hexapod_6x6r_pose_from_rpy(const real *t, const real *rpy, real *X)
+INLINE void interpolate_any(const real *X0, const real *X1, const real *s, real *X_out, int *code)
 {
-    const real cx = cosine(rpy[0]/2), cy = cosine(rpy[1]/2), cz = cosine(rpy[2]/2);
-    const real sx = sine(rpy[0]/2), sy = sine(rpy[1]/2), sz = sine(rpy[2]/2);
-    const real p[4] = {
-        sx*cy*cz - cx*sy*sz, cx*sy*cz + sx*cy*sz, cx*cy*sz - sx*sy*cz, cx*cy*cz + sx*sy*sz
-    };
-    return with_position(t, p, X);
-}
-
-int hexapod_6x6r_X_dot(const real *X, const real *V, real *X_dot)
-{
-    const real *const p = X + 3, *const w = V + 3;
-    real found[7];
-    memcpy(found, V, 3*sizeof *V);
-    found[3] = (p[3]*w[0] + w[1]*p[2] - w[2]*p[1])/2;
-    found[4] = (p[3]*w[1] + w[2]*p[0] - w[0]*p[2])/2;
-    found[5] = (p[3]*w[2] + w[0]*p[1] - w[1]*p[0])/2;
-    found[6] = -(p[0]*w[0] + p[1]*w[1] + p[2]*w[2])/2;
-    const int code = all_finite(X, 7) && all_finite(found, 7) ? HEXAPOD_6X6R_OK : HEXAPOD_6X6R_INVALID;
-    deliver(found, 7, 1, &code, X_dot);
-    return code;
+    real turn_between_5[3] = {0}, subtract_6[3] = {0}, join_7[6] = {0}, scale_8[6] = {0},
+        turn_quaternion_13[4] = {0}, add_14[3] = {0}, X[7] = {0};
+    verdict why;
+    start(1, &why);
+    check(7, 1, X0, why.invalid);
+    check(7, 1, X1, why.invalid);
+    check(1, 1, s, why.invalid);
+    const real *const take_1 = X0;
+    const real *const take_2 = X0 + 3;
+    const real *const take_3 = X1;
+    const real *const take_4 = X1 + 3;
+    turn_between(take_2, take_4, turn_between_5);
+    for (size_t i = 0; i < 3; ++i) {
+        subtract_6[i] = take_3[i] - take_1[i];
+    }
+    beside(1, 3, 3, subtract_6, turn_between_5, join_7);
+    for (size_t i = 0; i < 6; ++i) {
+        scale_8[i] = join_7[i]*s[i%(1)];
+    }
+    const real *const take_9 = X0;
+    const real *const take_10 = X0 + 3;
+    const real *const take_11 = scale_8;
+    const real *const take_12 = scale_8 + 3;
+    turn_quaternion(take_10, take_12, turn_quaternion_13);
+    for (size_t i = 0; i < 3; ++i) {
+        add_14[i] = take_9[i] + take_11[i];
+    }
+    beside(1, 3, 4, add_14, turn_quaternion_13, X);
+    check(7, 1, X, why.overflow);
+    judge(&why, 1, code);
+    deliver(X, 7, 1, code, X_out);
 }
 
 /* ---- one state, and batches ---- */
@@ -10542,7 +10922,7 @@ size_t hexapod_6x6r_M_batch(const hexapod_6x6r_model *model, size_t n, const hex
         int codes[LANES];
         M_any(model, LANES, X + 7*i, q0 ? q0 + 30*i : NULL, M + 36*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
-            if (codes[k] != HEXAPOD_6X6R_OK) {
+            if (codes[k] != OK) {
                 codes[k] = hexapod_6x6r_M(model, X + 7*(i + k), q0 ? q0 + 30*(i + k) : NULL, M + 36*(i + k));
             }
         }
@@ -10571,7 +10951,7 @@ size_t hexapod_6x6r_Z_batch(const hexapod_6x6r_model *model, size_t n, const hex
         int codes[LANES];
         Z_any(model, LANES, X + 7*i, q0 ? q0 + 30*i : NULL, V + 6*i, Z + 6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
-            if (codes[k] != HEXAPOD_6X6R_OK) {
+            if (codes[k] != OK) {
                 codes[k] = hexapod_6x6r_Z(model, X + 7*(i + k), q0 ? q0 + 30*(i + k) : NULL, V + 6*(i + k), Z +
                     6*(i + k));
             }
@@ -10601,7 +10981,7 @@ size_t hexapod_6x6r_H_batch(const hexapod_6x6r_model *model, size_t n, const hex
         int codes[LANES];
         H_any(model, LANES, X + 7*i, q0 ? q0 + 30*i : NULL, H + 36*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
-            if (codes[k] != HEXAPOD_6X6R_OK) {
+            if (codes[k] != OK) {
                 codes[k] = hexapod_6x6r_H(model, X + 7*(i + k), q0 ? q0 + 30*(i + k) : NULL, H + 36*(i + k));
             }
         }
@@ -10609,40 +10989,6 @@ size_t hexapod_6x6r_H_batch(const hexapod_6x6r_model *model, size_t n, const hex
     }
     for (; i < n; ++i) {
         const int code = hexapod_6x6r_H(model, X + 7*i, q0 ? q0 + 30*i : NULL, H + 36*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int hexapod_6x6r_dynamics(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
-    hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, hexapod_6x6r_real *M, hexapod_6x6r_real *Z,
-    hexapod_6x6r_real *H)
-{
-    int code;
-    dynamics_any(model, 1, X, q0, V, M, Z, H, &code);
-    return code;
-}
-
-size_t hexapod_6x6r_dynamics_batch(const hexapod_6x6r_model *model, size_t n, const
-    hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V,
-    hexapod_6x6r_real *M, hexapod_6x6r_real *Z, hexapod_6x6r_real *H, int *status)
-{
-    size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        dynamics_any(model, LANES, X + 7*i, q0 ? q0 + 30*i : NULL, V + 6*i, M + 36*i, Z + 6*i, H + 36*i,
-            codes);
-        for (size_t k = 0; k < LANES; ++k) {
-            if (codes[k] != HEXAPOD_6X6R_OK) {
-                codes[k] = hexapod_6x6r_dynamics(model, X + 7*(i + k), q0 ? q0 + 30*(i + k) : NULL, V + 6*(i + k),
-                    M + 36*(i + k), Z + 6*(i + k), H + 36*(i + k));
-            }
-        }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6x6r_dynamics(model, X + 7*i, q0 ? q0 + 30*i : NULL, V + 6*i, M + 36*i, Z
-            + 6*i, H + 36*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -10664,7 +11010,7 @@ size_t hexapod_6x6r_inverse_kinematics_batch(const hexapod_6x6r_model *model, si
         int codes[LANES];
         inverse_kinematics_any(model, LANES, X + 7*i, q0 ? q0 + 30*i : NULL, q + 30*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
-            if (codes[k] != HEXAPOD_6X6R_OK) {
+            if (codes[k] != OK) {
                 codes[k] = hexapod_6x6r_inverse_kinematics(model, X + 7*(i + k), q0 ? q0 + 30*(i + k) : NULL, q +
                     30*(i + k));
             }
@@ -10695,7 +11041,7 @@ size_t hexapod_6x6r_joint_rates_batch(const hexapod_6x6r_model *model, size_t n,
         int codes[LANES];
         joint_rates_any(model, LANES, X + 7*i, q0 ? q0 + 30*i : NULL, V + 6*i, rates + 30*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
-            if (codes[k] != HEXAPOD_6X6R_OK) {
+            if (codes[k] != OK) {
                 codes[k] = hexapod_6x6r_joint_rates(model, X + 7*(i + k), q0 ? q0 + 30*(i + k) : NULL, V + 6*(i +
                     k), rates + 30*(i + k));
             }
@@ -10729,7 +11075,7 @@ size_t hexapod_6x6r_joint_accelerations_batch(const hexapod_6x6r_model *model, s
         joint_accelerations_any(model, LANES, X + 7*i, q0 ? q0 + 30*i : NULL, V + 6*i, A + 6*i,
             accelerations + 30*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
-            if (codes[k] != HEXAPOD_6X6R_OK) {
+            if (codes[k] != OK) {
                 codes[k] = hexapod_6x6r_joint_accelerations(model, X + 7*(i + k), q0 ? q0 + 30*(i + k) : NULL, V +
                     6*(i + k), A + 6*(i + k), accelerations + 30*(i + k));
             }
@@ -10739,6 +11085,40 @@ size_t hexapod_6x6r_joint_accelerations_batch(const hexapod_6x6r_model *model, s
     for (; i < n; ++i) {
         const int code = hexapod_6x6r_joint_accelerations(model, X + 7*i, q0 ? q0 + 30*i : NULL, V + 6*i,
             A + 6*i, accelerations + 30*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int hexapod_6x6r_dynamics(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
+    hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, hexapod_6x6r_real *M, hexapod_6x6r_real *Z,
+    hexapod_6x6r_real *H)
+{
+    int code;
+    dynamics_any(model, 1, X, q0, V, M, Z, H, &code);
+    return code;
+}
+
+size_t hexapod_6x6r_dynamics_batch(const hexapod_6x6r_model *model, size_t n, const
+    hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V,
+    hexapod_6x6r_real *M, hexapod_6x6r_real *Z, hexapod_6x6r_real *H, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        dynamics_any(model, LANES, X + 7*i, q0 ? q0 + 30*i : NULL, V + 6*i, M + 36*i, Z + 6*i, H + 36*i,
+            codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = hexapod_6x6r_dynamics(model, X + 7*(i + k), q0 ? q0 + 30*(i + k) : NULL, V + 6*(i + k),
+                    M + 36*(i + k), Z + 6*(i + k), H + 36*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = hexapod_6x6r_dynamics(model, X + 7*i, q0 ? q0 + 30*i : NULL, V + 6*i, M + 36*i, Z
+            + 6*i, H + 36*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -10763,7 +11143,7 @@ size_t hexapod_6x6r_inverse_dynamics_batch(const hexapod_6x6r_model *model, size
         inverse_dynamics_any(model, LANES, X + 7*i, q0 ? q0 + 30*i : NULL, V + 6*i, A + 6*i, wrench ?
             wrench + 6*i : NULL, tau + 6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
-            if (codes[k] != HEXAPOD_6X6R_OK) {
+            if (codes[k] != OK) {
                 codes[k] = hexapod_6x6r_inverse_dynamics(model, X + 7*(i + k), q0 ? q0 + 30*(i + k) : NULL, V +
                     6*(i + k), A + 6*(i + k), wrench ? wrench + 6*(i + k) : NULL, tau + 6*(i + k));
             }
@@ -10797,7 +11177,7 @@ size_t hexapod_6x6r_forward_dynamics_batch(const hexapod_6x6r_model *model, size
         forward_dynamics_any(model, LANES, X + 7*i, q0 ? q0 + 30*i : NULL, V + 6*i, tau + 6*i, wrench ?
             wrench + 6*i : NULL, A + 6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
-            if (codes[k] != HEXAPOD_6X6R_OK) {
+            if (codes[k] != OK) {
                 codes[k] = hexapod_6x6r_forward_dynamics(model, X + 7*(i + k), q0 ? q0 + 30*(i + k) : NULL, V +
                     6*(i + k), tau + 6*(i + k), wrench ? wrench + 6*(i + k) : NULL, A + 6*(i + k));
             }
@@ -10812,13 +11192,27 @@ size_t hexapod_6x6r_forward_dynamics_batch(const hexapod_6x6r_model *model, size
     return failed;
 }
 
+int hexapod_6x6r_complete_acceleration(const hexapod_6x6r_model *model, const hexapod_6x6r_real
+    *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const hexapod_6x6r_real *A, const
+    hexapod_6x6r_real *wrench, hexapod_6x6r_real *completed)
+{
+    int code;
+    (void)model;
+    (void)X;
+    (void)q0;
+    (void)V;
+    (void)wrench;
+    complete_acceleration_any(A, completed, &code);
+    return code;
+}
+
 size_t hexapod_6x6r_complete_acceleration_batch(const hexapod_6x6r_model *model, size_t n, const
     hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const
     hexapod_6x6r_real *A, const hexapod_6x6r_real *wrench, hexapod_6x6r_real *completed, int
     *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
+    size_t failed = 0, i = 0;
+    for (; i < n; ++i) {
         const int code = hexapod_6x6r_complete_acceleration(model, X + 7*i, q0 ? q0 + 30*i : NULL, V +
             6*i, A + 6*i, wrench ? wrench + 6*i : NULL, completed + 6*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -10826,12 +11220,21 @@ size_t hexapod_6x6r_complete_acceleration_batch(const hexapod_6x6r_model *model,
     return failed;
 }
 
+int hexapod_6x6r_leg_reactions(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
+    hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const hexapod_6x6r_real *A, const
+    hexapod_6x6r_real *wrench, hexapod_6x6r_real *forces)
+{
+    int code;
+    leg_reactions_any(model, X, q0, V, A, wrench, forces, &code);
+    return code;
+}
+
 size_t hexapod_6x6r_leg_reactions_batch(const hexapod_6x6r_model *model, size_t n, const
     hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const
     hexapod_6x6r_real *A, const hexapod_6x6r_real *wrench, hexapod_6x6r_real *forces, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
+    size_t failed = 0, i = 0;
+    for (; i < n; ++i) {
         const int code = hexapod_6x6r_leg_reactions(model, X + 7*i, q0 ? q0 + 30*i : NULL, V + 6*i, A +
             6*i, wrench ? wrench + 6*i : NULL, forces + 36*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -10839,12 +11242,21 @@ size_t hexapod_6x6r_leg_reactions_batch(const hexapod_6x6r_model *model, size_t 
     return failed;
 }
 
+int hexapod_6x6r_energy(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
+    hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, hexapod_6x6r_real *kinetic,
+    hexapod_6x6r_real *potential)
+{
+    int code;
+    energy_any(model, X, q0, V, kinetic, potential, &code);
+    return code;
+}
+
 size_t hexapod_6x6r_energy_batch(const hexapod_6x6r_model *model, size_t n, const
     hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V,
     hexapod_6x6r_real *kinetic, hexapod_6x6r_real *potential, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
+    size_t failed = 0, i = 0;
+    for (; i < n; ++i) {
         const int code = hexapod_6x6r_energy(model, X + 7*i, q0 ? q0 + 30*i : NULL, V + 6*i, kinetic +
             1*i, potential + 1*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -10852,25 +11264,20 @@ size_t hexapod_6x6r_energy_batch(const hexapod_6x6r_model *model, size_t n, cons
     return failed;
 }
 
-size_t hexapod_6x6r_forward_kinematics_batch(const hexapod_6x6r_model *model, size_t n, const
-    hexapod_6x6r_real *q_actuated, const hexapod_6x6r_real *X0, const hexapod_6x6r_real *q0,
-    hexapod_6x6r_real *X, int *status)
+int hexapod_6x6r_condition(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
+    hexapod_6x6r_real *q0, hexapod_6x6r_real *sigma, hexapod_6x6r_real *legs)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = hexapod_6x6r_forward_kinematics(model, q_actuated + 6*i, X0 + 7*i, q0 ? q0 + 30*i
-            : NULL, X + 7*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    int code;
+    condition_any(model, X, q0, NULL, sigma, legs, &code);
+    return code;
 }
 
 size_t hexapod_6x6r_condition_batch(const hexapod_6x6r_model *model, size_t n, const
     hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, hexapod_6x6r_real *sigma, hexapod_6x6r_real
     *legs, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
+    size_t failed = 0, i = 0;
+    for (; i < n; ++i) {
         const int code = hexapod_6x6r_condition(model, X + 7*i, q0 ? q0 + 30*i : NULL, sigma + 6*i, legs +
             6*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -10878,45 +11285,339 @@ size_t hexapod_6x6r_condition_batch(const hexapod_6x6r_model *model, size_t n, c
     return failed;
 }
 
+int hexapod_6x6r_forward_kinematics(const hexapod_6x6r_model *model, const hexapod_6x6r_real
+    *q_actuated, const hexapod_6x6r_real *X0, const hexapod_6x6r_real *q0, hexapod_6x6r_real *X)
+{
+    int code;
+    forward_kinematics_any(model, q_actuated, X0, q0, X, &code);
+    return code;
+}
+
+size_t hexapod_6x6r_forward_kinematics_batch(const hexapod_6x6r_model *model, size_t n, const
+    hexapod_6x6r_real *q_actuated, const hexapod_6x6r_real *X0, const hexapod_6x6r_real *q0,
+    hexapod_6x6r_real *X, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; i < n; ++i) {
+        const int code = hexapod_6x6r_forward_kinematics(model, q_actuated + 6*i, X0 + 7*i, q0 ? q0 + 30*i
+            : NULL, X + 7*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int hexapod_6x6r_dissipation(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
+    hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, hexapod_6x6r_real *dissipation)
+{
+    int code;
+    (void)model;
+    (void)X;
+    (void)q0;
+    dissipation_any(V, dissipation, &code);
+    return code;
+}
+
+size_t hexapod_6x6r_dissipation_batch(const hexapod_6x6r_model *model, size_t n, const
+    hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V,
+    hexapod_6x6r_real *dissipation, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; i < n; ++i) {
+        const int code = hexapod_6x6r_dissipation(model, X + 7*i, q0 ? q0 + 30*i : NULL, V + 6*i,
+            dissipation + 1*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int hexapod_6x6r_momentum(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
+    hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, hexapod_6x6r_real *momentum)
+{
+    int code;
+    momentum_any(model, 1, X, q0, V, momentum, &code);
+    return code;
+}
+
+size_t hexapod_6x6r_momentum_batch(const hexapod_6x6r_model *model, size_t n, const
+    hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V,
+    hexapod_6x6r_real *momentum, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        momentum_any(model, LANES, X + 7*i, q0 ? q0 + 30*i : NULL, V + 6*i, momentum + 6*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = hexapod_6x6r_momentum(model, X + 7*(i + k), q0 ? q0 + 30*(i + k) : NULL, V + 6*(i + k),
+                    momentum + 6*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = hexapod_6x6r_momentum(model, X + 7*i, q0 ? q0 + 30*i : NULL, V + 6*i, momentum +
+            6*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int hexapod_6x6r_actuator_positions(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X,
+    const hexapod_6x6r_real *q0, hexapod_6x6r_real *q)
+{
+    int code;
+    actuator_positions_any(model, 1, X, q0, q, &code);
+    return code;
+}
+
+size_t hexapod_6x6r_actuator_positions_batch(const hexapod_6x6r_model *model, size_t n, const
+    hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, hexapod_6x6r_real *q, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        actuator_positions_any(model, LANES, X + 7*i, q0 ? q0 + 30*i : NULL, q + 6*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = hexapod_6x6r_actuator_positions(model, X + 7*(i + k), q0 ? q0 + 30*(i + k) : NULL, q +
+                    6*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = hexapod_6x6r_actuator_positions(model, X + 7*i, q0 ? q0 + 30*i : NULL, q + 6*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int hexapod_6x6r_actuator_rates(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
+    hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, hexapod_6x6r_real *rates)
+{
+    int code;
+    actuator_rates_any(model, 1, X, q0, V, rates, &code);
+    return code;
+}
+
+size_t hexapod_6x6r_actuator_rates_batch(const hexapod_6x6r_model *model, size_t n, const
+    hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V,
+    hexapod_6x6r_real *rates, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        actuator_rates_any(model, LANES, X + 7*i, q0 ? q0 + 30*i : NULL, V + 6*i, rates + 6*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = hexapod_6x6r_actuator_rates(model, X + 7*(i + k), q0 ? q0 + 30*(i + k) : NULL, V + 6*(i
+                    + k), rates + 6*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = hexapod_6x6r_actuator_rates(model, X + 7*i, q0 ? q0 + 30*i : NULL, V + 6*i, rates
+            + 6*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int hexapod_6x6r_actuator_accelerations(const hexapod_6x6r_model *model, const hexapod_6x6r_real
+    *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const hexapod_6x6r_real *A,
+    hexapod_6x6r_real *accelerations)
+{
+    int code;
+    actuator_accelerations_any(model, 1, X, q0, V, A, accelerations, &code);
+    return code;
+}
+
+size_t hexapod_6x6r_actuator_accelerations_batch(const hexapod_6x6r_model *model, size_t n, const
+    hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const
+    hexapod_6x6r_real *A, hexapod_6x6r_real *accelerations, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        actuator_accelerations_any(model, LANES, X + 7*i, q0 ? q0 + 30*i : NULL, V + 6*i, A + 6*i,
+            accelerations + 6*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = hexapod_6x6r_actuator_accelerations(model, X + 7*(i + k), q0 ? q0 + 30*(i + k) : NULL,
+                    V + 6*(i + k), A + 6*(i + k), accelerations + 6*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = hexapod_6x6r_actuator_accelerations(model, X + 7*i, q0 ? q0 + 30*i : NULL, V +
+            6*i, A + 6*i, accelerations + 6*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int hexapod_6x6r_power(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
+    hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const hexapod_6x6r_real *tau,
+    hexapod_6x6r_real *power)
+{
+    int code;
+    power_any(model, 1, X, q0, V, tau, power, &code);
+    return code;
+}
+
+size_t hexapod_6x6r_power_batch(const hexapod_6x6r_model *model, size_t n, const hexapod_6x6r_real
+    *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const hexapod_6x6r_real *tau,
+    hexapod_6x6r_real *power, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        power_any(model, LANES, X + 7*i, q0 ? q0 + 30*i : NULL, V + 6*i, tau + 6*i, power + 1*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = hexapod_6x6r_power(model, X + 7*(i + k), q0 ? q0 + 30*(i + k) : NULL, V + 6*(i + k),
+                    tau + 6*(i + k), power + 1*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = hexapod_6x6r_power(model, X + 7*i, q0 ? q0 + 30*i : NULL, V + 6*i, tau + 6*i,
+            power + 1*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int hexapod_6x6r_rotation(const hexapod_6x6r_real *X, hexapod_6x6r_real *R)
+{
+    int code;
+    rotation_any(X, R, &code);
+    return code;
+}
+
 size_t hexapod_6x6r_rotation_batch(size_t n, const hexapod_6x6r_real *X, hexapod_6x6r_real *R, int
     *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
+    size_t failed = 0, i = 0;
+    for (; i < n; ++i) {
         const int code = hexapod_6x6r_rotation(X + 7*i, R + 9*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
+int hexapod_6x6r_pose(const hexapod_6x6r_real *t, const hexapod_6x6r_real *R, hexapod_6x6r_real
+    *X)
+{
+    int code;
+    pose_any(t, R, X, &code);
+    return code;
+}
+
 size_t hexapod_6x6r_pose_batch(size_t n, const hexapod_6x6r_real *t, const hexapod_6x6r_real *R,
     hexapod_6x6r_real *X, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
+    size_t failed = 0, i = 0;
+    for (; i < n; ++i) {
         const int code = hexapod_6x6r_pose(t + 3*i, R + 9*i, X + 7*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
+int hexapod_6x6r_X_dot(const hexapod_6x6r_real *X, const hexapod_6x6r_real *V, hexapod_6x6r_real
+    *X_dot)
+{
+    int code;
+    X_dot_any(X, V, X_dot, &code);
+    return code;
+}
+
+size_t hexapod_6x6r_X_dot_batch(size_t n, const hexapod_6x6r_real *X, const hexapod_6x6r_real *V,
+    hexapod_6x6r_real *X_dot, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; i < n; ++i) {
+        const int code = hexapod_6x6r_X_dot(X + 7*i, V + 6*i, X_dot + 7*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int hexapod_6x6r_pose_from_rpy(const hexapod_6x6r_real *t, const hexapod_6x6r_real *rpy,
+    hexapod_6x6r_real *X)
+{
+    int code;
+    pose_from_rpy_any(t, rpy, X, &code);
+    return code;
+}
+
 size_t hexapod_6x6r_pose_from_rpy_batch(size_t n, const hexapod_6x6r_real *t, const
     hexapod_6x6r_real *rpy, hexapod_6x6r_real *X, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
+    size_t failed = 0, i = 0;
+    for (; i < n; ++i) {
         const int code = hexapod_6x6r_pose_from_rpy(t + 3*i, rpy + 3*i, X + 7*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-size_t hexapod_6x6r_X_dot_batch(size_t n, const hexapod_6x6r_real *X, const hexapod_6x6r_real *V,
-    hexapod_6x6r_real *X_dot, int *status)
+int hexapod_6x6r_retract(const hexapod_6x6r_real *X, const hexapod_6x6r_real *step,
+    hexapod_6x6r_real *X_moved)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = hexapod_6x6r_X_dot(X + 7*i, V + 6*i, X_dot + 7*i);
+    int code;
+    retract_any(X, step, X_moved, &code);
+    return code;
+}
+
+size_t hexapod_6x6r_retract_batch(size_t n, const hexapod_6x6r_real *X, const hexapod_6x6r_real
+    *step, hexapod_6x6r_real *X_moved, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; i < n; ++i) {
+        const int code = hexapod_6x6r_retract(X + 7*i, step + 6*i, X_moved + 7*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int hexapod_6x6r_difference(const hexapod_6x6r_real *X0, const hexapod_6x6r_real *X1,
+    hexapod_6x6r_real *step)
+{
+    int code;
+    difference_any(X0, X1, step, &code);
+    return code;
+}
+
+size_t hexapod_6x6r_difference_batch(size_t n, const hexapod_6x6r_real *X0, const
+    hexapod_6x6r_real *X1, hexapod_6x6r_real *step, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; i < n; ++i) {
+        const int code = hexapod_6x6r_difference(X0 + 7*i, X1 + 7*i, step + 6*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int hexapod_6x6r_interpolate(const hexapod_6x6r_real *X0, const hexapod_6x6r_real *X1, const
+    hexapod_6x6r_real *s, hexapod_6x6r_real *X)
+{
+    int code;
+    interpolate_any(X0, X1, s, X, &code);
+    return code;
+}
+
+size_t hexapod_6x6r_interpolate_batch(size_t n, const hexapod_6x6r_real *X0, const
+    hexapod_6x6r_real *X1, const hexapod_6x6r_real *s, hexapod_6x6r_real *X, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; i < n; ++i) {
+        const int code = hexapod_6x6r_interpolate(X0 + 7*i, X1 + 7*i, s + 1*i, X + 7*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;

@@ -161,6 +161,9 @@ typedef struct {
 extern const hexapod_6x6r_params hexapod_6x6r_default_params;
 extern const hexapod_6x6r_real hexapod_6x6r_HOME_X[HEXAPOD_6X6R_NQ];
 extern const hexapod_6x6r_real hexapod_6x6r_HOME_Q[HEXAPOD_6X6R_NJ];
+/* Places of the actuated joints in q, and their names, in the order of tau. */
+extern const size_t hexapod_6x6r_ACTUATED[HEXAPOD_6X6R_NU];
+extern const char *const hexapod_6x6r_ACTUATOR_NAMES[HEXAPOD_6X6R_NU];
 
 /* Prepare a model.  HEXAPOD_6X6R_INVALID, and the model is all NaN: a parameter is not finite or beyond
    1e+12; a mass is negative; an inertia is not symmetric, or has a negative principal moment,
@@ -190,19 +193,11 @@ int hexapod_6x6r_H(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, 
 size_t hexapod_6x6r_H_batch(const hexapod_6x6r_model *model, size_t n, const hexapod_6x6r_real *X,
     const hexapod_6x6r_real *q0, hexapod_6x6r_real *H, int *status);
 
-/* M, Z and H together, sharing the work. 10749 mul, 8193 add, 30 div, 30 sqrt, 60 trig; the
-   iteration of q apart. In: X (NQ), q0 (NJ, or NULL), V (NV). Out: M (NV x NV), Z (NV), H (NV x
-   NU). */
-int hexapod_6x6r_dynamics(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
-    hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, hexapod_6x6r_real *M, hexapod_6x6r_real *Z,
-    hexapod_6x6r_real *H);
-size_t hexapod_6x6r_dynamics_batch(const hexapod_6x6r_model *model, size_t n, const
-    hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V,
-    hexapod_6x6r_real *M, hexapod_6x6r_real *Z, hexapod_6x6r_real *H, int *status);
-
-/* Displacements q of all joints, on the assembly branch of home; iterated ones: the closure
-   reached from q0. 0 mul, 0 add, 0 div, 0 sqrt, 0 trig; the iteration of q apart. In: X (NQ), q0
-   (NJ, or NULL). Out: q (NJ). */
+/* Displacements q of all joints. Where there is no closed form they are iterated from q0:
+   impossible where Newton does not converge, or to a closure that is not on the assembly branch
+   of home, as the sign of the closure's determinant tells; from the last q of a path in small
+   steps they stay on it. 0 mul, 0 add, 0 div, 0 sqrt, 0 trig; the iteration of q apart. In: X
+   (NQ), q0 (NJ, or NULL). Out: q (NJ). */
 int hexapod_6x6r_inverse_kinematics(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X,
     const hexapod_6x6r_real *q0, hexapod_6x6r_real *q);
 size_t hexapod_6x6r_inverse_kinematics_batch(const hexapod_6x6r_model *model, size_t n, const
@@ -225,6 +220,16 @@ size_t hexapod_6x6r_joint_accelerations_batch(const hexapod_6x6r_model *model, s
     hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const
     hexapod_6x6r_real *A, hexapod_6x6r_real *accelerations, int *status);
 
+/* M, Z and H together, sharing the work. 10749 mul, 8193 add, 30 div, 30 sqrt, 60 trig; the
+   iteration of q apart. In: X (NQ), q0 (NJ, or NULL), V (NV). Out: M (NV x NV), Z (NV), H (NV x
+   NU). */
+int hexapod_6x6r_dynamics(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
+    hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, hexapod_6x6r_real *M, hexapod_6x6r_real *Z,
+    hexapod_6x6r_real *H);
+size_t hexapod_6x6r_dynamics_batch(const hexapod_6x6r_model *model, size_t n, const
+    hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V,
+    hexapod_6x6r_real *M, hexapod_6x6r_real *Z, hexapod_6x6r_real *H, int *status);
+
 /* Actuator forces tau for the acceleration A, by Eq. 3. 5649 mul, 4221 add, 30 div, 30 sqrt, 60
    trig; the solution of the linear equations apart; the iteration of q apart. In: X (NQ), q0 (NJ,
    or NULL), V (NV), A (NV), wrench (NW, or NULL). Out: tau (NU). */
@@ -245,8 +250,9 @@ size_t hexapod_6x6r_forward_dynamics_batch(const hexapod_6x6r_model *model, size
     hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const
     hexapod_6x6r_real *tau, const hexapod_6x6r_real *wrench, hexapod_6x6r_real *A, int *status);
 
-/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), q0
-   (NJ, or NULL), V (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
+/* A with the entries of passive extra coordinates that the others allow. It is A: there are no
+   passive extra coordinates, whose accelerations would follow. In: X (NQ), q0 (NJ, or NULL), V
+   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
 int hexapod_6x6r_complete_acceleration(const hexapod_6x6r_model *model, const hexapod_6x6r_real
     *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const hexapod_6x6r_real *A, const
     hexapod_6x6r_real *wrench, hexapod_6x6r_real *completed);
@@ -255,9 +261,10 @@ size_t hexapod_6x6r_complete_acceleration_batch(const hexapod_6x6r_model *model,
     hexapod_6x6r_real *A, const hexapod_6x6r_real *wrench, hexapod_6x6r_real *completed, int
     *status);
 
-/* Force, then moment, of each leg on the platform at its platform joint, base axes. 5502 mul,
-   4050 add, 30 div, 30 sqrt, 60 trig; inverse dynamics apart; the iteration of q apart. In: X
-   (NQ), q0 (NJ, or NULL), V (NV), A (NV), wrench (NW, or NULL). Out: forces (6 x 6). */
+/* Force and moment of each leg on the platform at its platform joint, base axes. The actuators
+   give the forces of inverse_dynamics. 5502 mul, 4050 add, 30 div, 30 sqrt, 60 trig; inverse
+   dynamics apart; the iteration of q apart. In: X (NQ), q0 (NJ, or NULL), V (NV), A (NV), wrench
+   (NW, or NULL). Out: forces (6 x 6). */
 int hexapod_6x6r_leg_reactions(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
     hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const hexapod_6x6r_real *A, const
     hexapod_6x6r_real *wrench, hexapod_6x6r_real *forces);
@@ -265,7 +272,7 @@ size_t hexapod_6x6r_leg_reactions_batch(const hexapod_6x6r_model *model, size_t 
     hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const
     hexapod_6x6r_real *A, const hexapod_6x6r_real *wrench, hexapod_6x6r_real *forces, int *status);
 
-/* Kinetic and potential energy; the latter is zero at the base origin. In: X (NQ), q0 (NJ, or
+/* Kinetic and potential energy [J]; the latter is zero at the base origin. In: X (NQ), q0 (NJ, or
    NULL), V (NV). Out: kinetic (1), potential (1). */
 int hexapod_6x6r_energy(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
     hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, hexapod_6x6r_real *kinetic,
@@ -274,36 +281,95 @@ size_t hexapod_6x6r_energy_batch(const hexapod_6x6r_model *model, size_t n, cons
     hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V,
     hexapod_6x6r_real *kinetic, hexapod_6x6r_real *potential, int *status);
 
-/* X at which the driven joints stand at q_actuated, by Gauss-Newton from X0; extra coordinates
-   that the drives do not determine stay. In: q_actuated (NU), X0 (NQ), q0 (NJ, or NULL). Out: X
-   (NQ). */
-int hexapod_6x6r_forward_kinematics(const hexapod_6x6r_model *model, const hexapod_6x6r_real
-    *q_actuated, const hexapod_6x6r_real *X0, const hexapod_6x6r_real *q0, hexapod_6x6r_real *X);
-size_t hexapod_6x6r_forward_kinematics_batch(const hexapod_6x6r_model *model, size_t n, const
-    hexapod_6x6r_real *q_actuated, const hexapod_6x6r_real *X0, const hexapod_6x6r_real *q0,
-    hexapod_6x6r_real *X, int *status);
-
-/* Singular values of H in descending order, moment rows divided by the rms distance of the
-   platform points from their centroid; for every leg the least tested pivot as a fraction of its
-   scale. 2239 mul, 1332 add, 30 div, 31 sqrt, 60 trig; the singular values apart; the iteration
-   of q apart. In: X (NQ), q0 (NJ, or NULL). Out: sigma (6), legs (6). */
+/* How far a pose is from singularities: singular values of H, rows of moments divided by a
+   length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
+   distance of the platform points from their centroid, or where they coincide the rms size of the
+   legs. 2239 mul, 1332 add, 30 div, 31 sqrt, 60 trig; the singular values apart; the iteration of
+   q apart. In: X (NQ), q0 (NJ, or NULL). Out: sigma (6), legs (6). */
 int hexapod_6x6r_condition(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
     hexapod_6x6r_real *q0, hexapod_6x6r_real *sigma, hexapod_6x6r_real *legs);
 size_t hexapod_6x6r_condition_batch(const hexapod_6x6r_model *model, size_t n, const
     hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, hexapod_6x6r_real *sigma, hexapod_6x6r_real
     *legs, int *status);
 
-/* base_R_platform; a quaternion need not be normalised. In: X (NQ). Out: R (3 x 3). */
+/* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
+   that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
+   X0 (NQ), q0 (NJ, or NULL). Out: X (NQ). */
+int hexapod_6x6r_forward_kinematics(const hexapod_6x6r_model *model, const hexapod_6x6r_real
+    *q_actuated, const hexapod_6x6r_real *X0, const hexapod_6x6r_real *q0, hexapod_6x6r_real *X);
+size_t hexapod_6x6r_forward_kinematics_batch(const hexapod_6x6r_model *model, size_t n, const
+    hexapod_6x6r_real *q_actuated, const hexapod_6x6r_real *X0, const hexapod_6x6r_real *q0,
+    hexapod_6x6r_real *X, int *status);
+
+/* Power that friction takes, not negative; the rate of energy is power less this. In: X (NQ), q0
+   (NJ, or NULL), V (NV). Out: dissipation (1). */
+int hexapod_6x6r_dissipation(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
+    hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, hexapod_6x6r_real *dissipation);
+size_t hexapod_6x6r_dissipation_batch(const hexapod_6x6r_model *model, size_t n, const
+    hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V,
+    hexapod_6x6r_real *dissipation, int *status);
+
+/* Generalised momentum M V. 7275 mul, 5289 add, 30 div, 30 sqrt, 60 trig; the iteration of q
+   apart. In: X (NQ), q0 (NJ, or NULL), V (NV). Out: momentum (NV). */
+int hexapod_6x6r_momentum(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
+    hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, hexapod_6x6r_real *momentum);
+size_t hexapod_6x6r_momentum_batch(const hexapod_6x6r_model *model, size_t n, const
+    hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V,
+    hexapod_6x6r_real *momentum, int *status);
+
+/* Displacements of the actuated joints, in the order of tau. 0 mul, 0 add, 0 div, 0 sqrt, 0 trig;
+   the iteration of q apart. In: X (NQ), q0 (NJ, or NULL). Out: q (NU). */
+int hexapod_6x6r_actuator_positions(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X,
+    const hexapod_6x6r_real *q0, hexapod_6x6r_real *q);
+size_t hexapod_6x6r_actuator_positions_batch(const hexapod_6x6r_model *model, size_t n, const
+    hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, hexapod_6x6r_real *q, int *status);
+
+/* Rates of the actuated joints, in the order of tau. 2304 mul, 1392 add, 30 div, 30 sqrt, 60
+   trig; the iteration of q apart. In: X (NQ), q0 (NJ, or NULL), V (NV). Out: rates (NU). */
+int hexapod_6x6r_actuator_rates(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
+    hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, hexapod_6x6r_real *rates);
+size_t hexapod_6x6r_actuator_rates_batch(const hexapod_6x6r_model *model, size_t n, const
+    hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V,
+    hexapod_6x6r_real *rates, int *status);
+
+/* Accelerations of the actuated joints, in the order of tau. 3630 mul, 2382 add, 30 div, 30 sqrt,
+   60 trig; the iteration of q apart. In: X (NQ), q0 (NJ, or NULL), V (NV), A (NV). Out:
+   accelerations (NU). */
+int hexapod_6x6r_actuator_accelerations(const hexapod_6x6r_model *model, const hexapod_6x6r_real
+    *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const hexapod_6x6r_real *A,
+    hexapod_6x6r_real *accelerations);
+size_t hexapod_6x6r_actuator_accelerations_batch(const hexapod_6x6r_model *model, size_t n, const
+    hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const
+    hexapod_6x6r_real *A, hexapod_6x6r_real *accelerations, int *status);
+
+/* Power that actuators give to the mechanism: tau times their rates. In: X (NQ), q0 (NJ, or
+   NULL), V (NV), tau (NU). Out: power (1). */
+int hexapod_6x6r_power(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
+    hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const hexapod_6x6r_real *tau,
+    hexapod_6x6r_real *power);
+size_t hexapod_6x6r_power_batch(const hexapod_6x6r_model *model, size_t n, const hexapod_6x6r_real
+    *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const hexapod_6x6r_real *tau,
+    hexapod_6x6r_real *power, int *status);
+
+/* base_R_platform at X; a quaternion need not be normalised. Impossible where the quaternion is
+   zero or its squared length overflows. In: X (NQ). Out: R (3 x 3). */
 int hexapod_6x6r_rotation(const hexapod_6x6r_real *X, hexapod_6x6r_real *R);
 size_t hexapod_6x6r_rotation_batch(size_t n, const hexapod_6x6r_real *X, hexapod_6x6r_real *R, int
     *status);
 
-/* X of the platform at origin t with rotation matrix R. INVALID where R has not orthonormal rows,
-   to 1e-06 (float: 1e-5), and determinant +1. In: t (3), R (3 x 3). Out: X (NQ). */
+/* X of the platform at origin t with rotation matrix R; extra coordinates zero. INVALID where R
+   has not orthonormal rows, to 1e-06 (float: 1e-5), and determinant +1. In: t (3), R (3 x 3).
+   Out: X (NQ). */
 int hexapod_6x6r_pose(const hexapod_6x6r_real *t, const hexapod_6x6r_real *R, hexapod_6x6r_real
     *X);
 size_t hexapod_6x6r_pose_batch(size_t n, const hexapod_6x6r_real *t, const hexapod_6x6r_real *R,
     hexapod_6x6r_real *X, int *status);
+
+/* Rate of X at the velocity V. In: X (NQ), V (NV). Out: X_dot (NQ). */
+int hexapod_6x6r_X_dot(const hexapod_6x6r_real *X, const hexapod_6x6r_real *V, hexapod_6x6r_real
+    *X_dot);
+size_t hexapod_6x6r_X_dot_batch(size_t n, const hexapod_6x6r_real *X, const hexapod_6x6r_real *V,
+    hexapod_6x6r_real *X_dot, int *status);
 
 /* X from roll, pitch, yaw about the fixed axes x, y, z, in that order. In: t (3), rpy (3). Out: X
    (NQ). */
@@ -312,11 +378,26 @@ int hexapod_6x6r_pose_from_rpy(const hexapod_6x6r_real *t, const hexapod_6x6r_re
 size_t hexapod_6x6r_pose_from_rpy_batch(size_t n, const hexapod_6x6r_real *t, const
     hexapod_6x6r_real *rpy, hexapod_6x6r_real *X, int *status);
 
-/* Rate of X at the velocity V. In: X (NQ), V (NV). Out: X_dot (NQ). */
-int hexapod_6x6r_X_dot(const hexapod_6x6r_real *X, const hexapod_6x6r_real *V, hexapod_6x6r_real
-    *X_dot);
-size_t hexapod_6x6r_X_dot_batch(size_t n, const hexapod_6x6r_real *X, const hexapod_6x6r_real *V,
-    hexapod_6x6r_real *X_dot, int *status);
+/* X moved by a displacement: (t + d, exp([phi]) R, y + dy) of step = (d, phi, dy). In: X (NQ),
+   step (NV). Out: X_moved (NQ). */
+int hexapod_6x6r_retract(const hexapod_6x6r_real *X, const hexapod_6x6r_real *step,
+    hexapod_6x6r_real *X_moved);
+size_t hexapod_6x6r_retract_batch(size_t n, const hexapod_6x6r_real *X, const hexapod_6x6r_real
+    *step, hexapod_6x6r_real *X_moved, int *status);
+
+/* The displacement from X0 to X1, the inverse of retract; rotations the shorter way. In: X0 (NQ),
+   X1 (NQ). Out: step (NV). */
+int hexapod_6x6r_difference(const hexapod_6x6r_real *X0, const hexapod_6x6r_real *X1,
+    hexapod_6x6r_real *step);
+size_t hexapod_6x6r_difference_batch(size_t n, const hexapod_6x6r_real *X0, const
+    hexapod_6x6r_real *X1, hexapod_6x6r_real *step, int *status);
+
+/* X0 moved by s times the displacement to X1: straight on, turning about one axis. In: X0 (NQ),
+   X1 (NQ), s (1). Out: X (NQ). */
+int hexapod_6x6r_interpolate(const hexapod_6x6r_real *X0, const hexapod_6x6r_real *X1, const
+    hexapod_6x6r_real *s, hexapod_6x6r_real *X);
+size_t hexapod_6x6r_interpolate_batch(size_t n, const hexapod_6x6r_real *X0, const
+    hexapod_6x6r_real *X1, const hexapod_6x6r_real *s, hexapod_6x6r_real *X, int *status);
 
 #ifdef __cplusplus
 }

@@ -33,6 +33,8 @@ __all__ = [
     "NC",
     "NW",
     "NJ",
+    "ACTUATED",
+    "ACTUATOR_NAMES",
     "H",
     "HOME_Q",
     "HOME_X",
@@ -40,20 +42,29 @@ __all__ = [
     "Parameters",
     "X_dot",
     "Z",
+    "actuator_accelerations",
+    "actuator_positions",
+    "actuator_rates",
     "complete_acceleration",
     "condition",
+    "difference",
+    "dissipation",
     "dynamics",
     "energy",
     "forward_dynamics",
     "forward_kinematics",
+    "interpolate",
     "inverse_dynamics",
     "inverse_kinematics",
     "joint_accelerations",
     "joint_rates",
     "leg_reactions",
+    "momentum",
     "null_space",
     "pose",
     "pose_from_rpy",
+    "power",
+    "retract",
     "rotation",
 ]
 
@@ -162,7 +173,8 @@ _jacobian_rrrrrr_rrrrrr = (
     [23, 48, 73, 98, 123, 148],
     [24, 49, 74, 99, 124, 149],
 )
-_DRIVEN_JOINTS = (1, 6, 11, 16, 21, 26)
+ACTUATED = (1, 6, 11, 16, 21, 26)  # places of the actuated joints in q, in the order of tau
+ACTUATOR_NAMES = ('leg1_joint2', 'leg2_joint2', 'leg3_joint2', 'leg4_joint2', 'leg5_joint2', 'leg6_joint2')
 
 _DEFAULTS = {
     "gravity": [0.0, 0.0, -9.81],
@@ -534,10 +546,10 @@ def _argument(function, name, value, shape, default=None, rule=""):
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
-    if not shape:
+    if not shape and rule == "positive":
         if array.shape or not 0.0 < array < np.inf:
             raise ValueError(f"{function}: {name} is {value!r}, expected a positive number")
-    elif array.shape[-len(shape) :] != shape:
+    elif shape and array.shape[-len(shape) :] != shape:
         wanted = ", ".join(map(str, ("...", *shape)))
         raise ValueError(f"{function}: {name} has shape {array.shape}, expected ({wanted})")
     elif rule == "positive" and not np.all((array > 0.0) & (array < np.inf)):
@@ -1452,6 +1464,16 @@ def _turned(q, b):
     return np.concatenate((vector, (c * q[3] - np.sum(v * q[:3], axis=0))[None]))
 
 
+def _turn_between(p, q):
+    """The shortest rotation vectors that turn quaternions p to q."""
+    p, q = _unit(p), _unit(q)
+    vector = p[3] * q[:3] - q[3] * p[:3] - np.cross(q[:3], p[:3], axis=0)
+    scalar, size = np.sum(p * q, axis=0), np.sqrt(np.sum(vector * vector, axis=0))
+    half, some = np.arctan2(size, np.abs(scalar)), size > 0.0
+    factor = 2.0 * np.where(some, half / np.where(some, size, 1.0), 1.0)
+    return vector * np.where(scalar < 0.0, -factor, factor)
+
+
 def _moved(X, step):
     """X moved by small displacements."""
     if _Q is None:
@@ -1703,11 +1725,6 @@ def _run_dynamics(m, X, V, q):
     V_3 = V[3]
     V_4 = V[4]
     V_5 = V[5]
-    q_1 = q[1]
-    q_2 = q[2]
-    q_3 = q[3]
-    q_4 = q[4]
-    q_5 = q[5]
     # X: named entries
     quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6
     quaternion_scale = 2.0/quaternion_norm2
@@ -3437,11 +3454,6 @@ def _run_M(m, X, q):
     X_4 = X[4]
     X_5 = X[5]
     X_6 = X[6]
-    q_1 = q[1]
-    q_2 = q[2]
-    q_3 = q[3]
-    q_4 = q[4]
-    q_5 = q[5]
     # X: named entries
     quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6
     quaternion_scale = 2.0/quaternion_norm2
@@ -4592,11 +4604,6 @@ def _run_Z(m, X, V, q):
     V_3 = V[3]
     V_4 = V[4]
     V_5 = V[5]
-    q_1 = q[1]
-    q_2 = q[2]
-    q_3 = q[3]
-    q_4 = q[4]
-    q_5 = q[5]
     # X: named entries
     quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6
     quaternion_scale = 2.0/quaternion_norm2
@@ -5531,11 +5538,6 @@ def _run_H(m, X, q):
     X_4 = X[4]
     X_5 = X[5]
     X_6 = X[6]
-    q_1 = q[1]
-    q_2 = q[2]
-    q_3 = q[3]
-    q_4 = q[4]
-    q_5 = q[5]
     # X: named entries
     quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6
     quaternion_scale = 2.0/quaternion_norm2
@@ -5947,11 +5949,6 @@ def _run_required(m, X, V, A, q):
     A_3 = A[3]
     A_4 = A[4]
     A_5 = A[5]
-    q_1 = q[1]
-    q_2 = q[2]
-    q_3 = q[3]
-    q_4 = q[4]
-    q_5 = q[5]
     # X: named entries
     quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6
     quaternion_scale = 2.0/quaternion_norm2
@@ -6964,11 +6961,6 @@ def _run_required(m, X, V, A, q):
 # inverse_kinematics: 0 mul, 0 add, 0 div, 0 sqrt, 0 trig
 def _run_inverse_kinematics(m, q):
     shared, legs = m.constants("inverse_kinematics")
-    q_1 = q[1]
-    q_2 = q[2]
-    q_3 = q[3]
-    q_4 = q[4]
-    q_5 = q[5]
     ok = True
     out_q = m.zeros("q")
     for leg, k in legs[0]:
@@ -7001,11 +6993,6 @@ def _run_joint_rates(m, X, V, q):
     V_3 = V[3]
     V_4 = V[4]
     V_5 = V[5]
-    q_1 = q[1]
-    q_2 = q[2]
-    q_3 = q[3]
-    q_4 = q[4]
-    q_5 = q[5]
     # X: named entries
     quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6
     quaternion_scale = 2.0/quaternion_norm2
@@ -7430,11 +7417,6 @@ def _run_joint_accelerations(m, X, V, A, q):
     A_3 = A[3]
     A_4 = A[4]
     A_5 = A[5]
-    q_1 = q[1]
-    q_2 = q[2]
-    q_3 = q[3]
-    q_4 = q[4]
-    q_5 = q[5]
     # X: named entries
     quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6
     quaternion_scale = 2.0/quaternion_norm2
@@ -8082,11 +8064,6 @@ def _run_legs(m, X, V, A, q):
     A_3 = A[3]
     A_4 = A[4]
     A_5 = A[5]
-    q_1 = q[1]
-    q_2 = q[2]
-    q_3 = q[3]
-    q_4 = q[4]
-    q_5 = q[5]
     # X: named entries
     quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6
     quaternion_scale = 2.0/quaternion_norm2
@@ -9035,11 +9012,6 @@ def _run_potential(m, X, q):
     X_4 = X[4]
     X_5 = X[5]
     X_6 = X[6]
-    q_1 = q[1]
-    q_2 = q[2]
-    q_3 = q[3]
-    q_4 = q[4]
-    q_5 = q[5]
     # X: named entries
     t_x = X_0
     t_y = X_1
@@ -9171,11 +9143,6 @@ def _run_condition(m, X, q):
     X_4 = X[4]
     X_5 = X[5]
     X_6 = X[6]
-    q_1 = q[1]
-    q_2 = q[2]
-    q_3 = q[3]
-    q_4 = q[4]
-    q_5 = q[5]
     # X: named entries
     quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6
     quaternion_scale = 2.0/quaternion_norm2
@@ -9603,11 +9570,6 @@ def _run_closure_rrrrrr(m, X, q):
     X_4 = X[4]
     X_5 = X[5]
     X_6 = X[6]
-    q_1 = q[1]
-    q_2 = q[2]
-    q_3 = q[3]
-    q_4 = q[4]
-    q_5 = q[5]
     # X: named entries
     t_x = X_0
     t_y = X_1
@@ -9970,6 +9932,48 @@ def _steps_forward_kinematics(m, q_actuated, X0, q0):
     return (X,)
 
 
+def _steps_dissipation(m, X, V, q0):
+    subtract_1 = V - V
+    dissipation = subtract_1[0]
+    return (dissipation,)
+
+
+def _steps_momentum(m, X, V, q0):
+    q = _closed(m, X, q0)
+    M, = m.run(_run_M, ("M",), X, q)
+    momentum = np.einsum("ijs,js->is", M, V)
+    return (momentum,)
+
+
+def _steps_actuator_positions(m, X, q0):
+    q = _closed(m, X, q0)
+    q_of_inverse_kinematics, = m.run(_run_inverse_kinematics, ("q",), q)
+    q = q_of_inverse_kinematics[[1, 6, 11, 16, 21, 26]]
+    return (q,)
+
+
+def _steps_actuator_rates(m, X, V, q0):
+    q = _closed(m, X, q0)
+    qd_of_joint_rates, = m.run(_run_joint_rates, ("qd",), X, V, q)
+    qd = qd_of_joint_rates[[1, 6, 11, 16, 21, 26]]
+    return (qd,)
+
+
+def _steps_actuator_accelerations(m, X, V, A, q0):
+    q = _closed(m, X, q0)
+    qdd_of_joint_accelerations, = m.run(_run_joint_accelerations, ("qdd",), X, V, A, q)
+    qdd = qdd_of_joint_accelerations[[1, 6, 11, 16, 21, 26]]
+    return (qdd,)
+
+
+def _steps_power(m, X, V, tau, q0):
+    q = _closed(m, X, q0)
+    H, = m.run(_run_H, ("H",), X, q)
+    times_1 = np.einsum("ijs,js->is", H, tau)
+    power = np.sum(times_1 * V, axis=0)
+    return (power,)
+
+
 def _steps_rotation(m, X):
     take_1 = X[3:7]
     R = _rotation_of_quaternion(take_1)
@@ -9996,6 +10000,47 @@ def _steps_pose_from_rpy(m, t, rpy):
     quaternion_of_rpy_1 = _quaternion_of_rpy(rpy)
     join_2 = np.concatenate((t, quaternion_of_rpy_1))
     X = join_2
+    return (X,)
+
+
+def _steps_retract(m, X, step):
+    take_1 = X[0:3]
+    take_2 = X[3:7]
+    take_3 = step[0:3]
+    take_4 = step[3:6]
+    turn_quaternion_5 = _turned(take_2, take_4)
+    add_6 = take_1 + take_3
+    X_moved = np.concatenate((add_6, turn_quaternion_5))
+    return (X_moved,)
+
+
+def _steps_difference(m, X0, X1):
+    take_1 = X0[0:3]
+    take_2 = X0[3:7]
+    take_3 = X1[0:3]
+    take_4 = X1[3:7]
+    turn_between_5 = _turn_between(take_2, take_4)
+    subtract_6 = take_3 - take_1
+    step = np.concatenate((subtract_6, turn_between_5))
+    return (step,)
+
+
+def _steps_interpolate(m, X0, X1, s):
+    take_1 = X0[0:3]
+    take_2 = X0[3:7]
+    take_3 = X1[0:3]
+    take_4 = X1[3:7]
+    turn_between_5 = _turn_between(take_2, take_4)
+    subtract_6 = take_3 - take_1
+    join_7 = np.concatenate((subtract_6, turn_between_5))
+    scale_8 = join_7 * s
+    take_9 = X0[0:3]
+    take_10 = X0[3:7]
+    take_11 = scale_8[0:3]
+    take_12 = scale_8[3:6]
+    turn_quaternion_13 = _turned(take_10, take_12)
+    add_14 = take_9 + take_11
+    X = np.concatenate((add_14, turn_quaternion_13))
     return (X,)
 
 
@@ -10337,6 +10382,128 @@ def forward_kinematics(q_actuated, X0, p=None, *, q0=None):
     )
 
 
+def dissipation(X, V, p=None, *, q0=None):
+    """Power that friction takes, not negative; the rate of energy is power less this.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        q0: first guess of the displacements, by default HOME_Q (..., NJ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        dissipation: power that friction takes [W] (...,).
+    """
+    return _call(
+        "dissipation", _steps_dissipation, p,
+        ("X", X, (NQ,), None, "unused"),
+        ("V", V, (NV,)),
+        ("q0", q0, (NJ,), HOME_Q, "unused"),
+    )
+
+
+def momentum(X, V, p=None, *, q0=None):
+    """Generalised momentum M V.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        q0: first guess of the displacements, by default HOME_Q (..., NJ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        momentum: M V [kg m/s, kg m^2/s] (..., NV).
+    """
+    return _call(
+        "momentum", _steps_momentum, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+        ("q0", q0, (NJ,), HOME_Q),
+    )
+
+
+def actuator_positions(X, p=None, *, q0=None):
+    """Displacements of the actuated joints, in the order of tau.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        q0: first guess of the displacements, by default HOME_Q (..., NJ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        q: displacements of the actuated joints [m or rad] (..., NU).
+    """
+    return _call(
+        "actuator_positions", _steps_actuator_positions, p,
+        ("X", X, (NQ,)),
+        ("q0", q0, (NJ,), HOME_Q),
+    )
+
+
+def actuator_rates(X, V, p=None, *, q0=None):
+    """Rates of the actuated joints, in the order of tau.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        q0: first guess of the displacements, by default HOME_Q (..., NJ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        qd: rates of the actuated joints [m/s or rad/s] (..., NU).
+    """
+    return _call(
+        "actuator_rates", _steps_actuator_rates, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+        ("q0", q0, (NJ,), HOME_Q),
+    )
+
+
+def actuator_accelerations(X, V, A, p=None, *, q0=None):
+    """Accelerations of the actuated joints, in the order of tau.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        A: acceleration (..., NV).
+        q0: first guess of the displacements, by default HOME_Q (..., NJ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        qdd: accelerations of the actuated joints [m/s^2 or rad/s^2] (..., NU).
+    """
+    return _call(
+        "actuator_accelerations", _steps_actuator_accelerations, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+        ("A", A, (NV,)),
+        ("q0", q0, (NJ,), HOME_Q),
+    )
+
+
+def power(X, V, tau, p=None, *, q0=None):
+    """Power that actuators give to the mechanism: tau times their rates.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        tau: actuator forces [N or N m] (..., NU).
+        q0: first guess of the displacements, by default HOME_Q (..., NJ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        power: power of the actuators [W] (...,).
+    """
+    return _call(
+        "power", _steps_power, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+        ("tau", tau, (NU,)),
+        ("q0", q0, (NJ,), HOME_Q),
+    )
+
+
 def rotation(X):
     """base_R_platform at X; a quaternion need not be normalised.
 
@@ -10407,4 +10574,58 @@ def pose_from_rpy(t, rpy):
         "pose_from_rpy", _steps_pose_from_rpy, None,
         ("t", t, (3,)),
         ("rpy", rpy, (3,)),
+    )
+
+
+def retract(X, step):
+    """X moved by a displacement: (t + d, exp([phi]) R, y + dy) of step = (d, phi, dy).
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        step: displacement: of the origin, rotation vector in base axes, of extra coordinates
+            (..., NV).
+
+    Returns:
+        X_moved: the pose moved (..., NQ).
+    """
+    return _call(
+        "retract", _steps_retract, None,
+        ("X", X, (NQ,)),
+        ("step", step, (NV,)),
+    )
+
+
+def difference(X0, X1):
+    """The displacement from X0 to X1, the inverse of `retract`; rotations the shorter way.
+
+    Args:
+        X0: from, and extra coordinates (..., NQ).
+        X1: to, and extra coordinates (..., NQ).
+
+    Returns:
+        step: of the origin, rotation vector in base axes, of extra coordinates (..., NV).
+    """
+    return _call(
+        "difference", _steps_difference, None,
+        ("X0", X0, (NQ,)),
+        ("X1", X1, (NQ,)),
+    )
+
+
+def interpolate(X0, X1, s):
+    """X0 moved by s times the displacement to X1: straight on, turning about one axis.
+
+    Args:
+        X0: from, and extra coordinates (..., NQ).
+        X1: to, and extra coordinates (..., NQ).
+        s: part of the way, 0 at X0, 1 at X1 (...,).
+
+    Returns:
+        X: pose (..., NQ).
+    """
+    return _call(
+        "interpolate", _steps_interpolate, None,
+        ("X0", X0, (NQ,)),
+        ("X1", X1, (NQ,)),
+        ("s", s, ()),
     )

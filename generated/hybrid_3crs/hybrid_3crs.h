@@ -116,6 +116,9 @@ typedef struct {
 extern const hybrid_3crs_params hybrid_3crs_default_params;
 extern const hybrid_3crs_real hybrid_3crs_HOME_X[HYBRID_3CRS_NQ];
 extern const hybrid_3crs_real hybrid_3crs_HOME_Q[HYBRID_3CRS_NJ];
+/* Places of the actuated joints in q, and their names, in the order of tau. */
+extern const size_t hybrid_3crs_ACTUATED[HYBRID_3CRS_NU];
+extern const char *const hybrid_3crs_ACTUATOR_NAMES[HYBRID_3CRS_NU];
 
 /* Prepare a model.  HYBRID_3CRS_INVALID, and the model is all NaN: a parameter is not finite or beyond
    1e+12; a mass is negative; an inertia is not symmetric, or has a negative principal moment,
@@ -142,16 +145,8 @@ int hybrid_3crs_H(const hybrid_3crs_model *model, const hybrid_3crs_real *X, hyb
 size_t hybrid_3crs_H_batch(const hybrid_3crs_model *model, size_t n, const hybrid_3crs_real *X,
     hybrid_3crs_real *H, int *status);
 
-/* M, Z and H together, sharing the work. 1098 mul, 822 add, 9 div, 6 sqrt, 0 trig. In: X (NQ), V
-   (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
-int hybrid_3crs_dynamics(const hybrid_3crs_model *model, const hybrid_3crs_real *X, const
-    hybrid_3crs_real *V, hybrid_3crs_real *M, hybrid_3crs_real *Z, hybrid_3crs_real *H);
-size_t hybrid_3crs_dynamics_batch(const hybrid_3crs_model *model, size_t n, const hybrid_3crs_real
-    *X, const hybrid_3crs_real *V, hybrid_3crs_real *M, hybrid_3crs_real *Z, hybrid_3crs_real *H,
-    int *status);
-
-/* Displacements q of all joints, on the assembly branch of home. 93 mul, 72 add, 3 div, 6 sqrt, 6
-   trig. In: X (NQ). Out: q (NJ). */
+/* Displacements q of all joints. They are those of the assembly branch of home. 93 mul, 72 add, 3
+   div, 6 sqrt, 6 trig. In: X (NQ). Out: q (NJ). */
 int hybrid_3crs_inverse_kinematics(const hybrid_3crs_model *model, const hybrid_3crs_real *X,
     hybrid_3crs_real *q);
 size_t hybrid_3crs_inverse_kinematics_batch(const hybrid_3crs_model *model, size_t n, const
@@ -171,6 +166,14 @@ int hybrid_3crs_joint_accelerations(const hybrid_3crs_model *model, const hybrid
 size_t hybrid_3crs_joint_accelerations_batch(const hybrid_3crs_model *model, size_t n, const
     hybrid_3crs_real *X, const hybrid_3crs_real *V, const hybrid_3crs_real *A, hybrid_3crs_real
     *accelerations, int *status);
+
+/* M, Z and H together, sharing the work. 1098 mul, 822 add, 9 div, 6 sqrt, 0 trig. In: X (NQ), V
+   (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
+int hybrid_3crs_dynamics(const hybrid_3crs_model *model, const hybrid_3crs_real *X, const
+    hybrid_3crs_real *V, hybrid_3crs_real *M, hybrid_3crs_real *Z, hybrid_3crs_real *H);
+size_t hybrid_3crs_dynamics_batch(const hybrid_3crs_model *model, size_t n, const hybrid_3crs_real
+    *X, const hybrid_3crs_real *V, hybrid_3crs_real *M, hybrid_3crs_real *Z, hybrid_3crs_real *H,
+    int *status);
 
 /* Actuator forces tau for the acceleration A, by Eq. 3. 786 mul, 588 add, 9 div, 6 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
@@ -192,8 +195,9 @@ size_t hybrid_3crs_forward_dynamics_batch(const hybrid_3crs_model *model, size_t
     hybrid_3crs_real *X, const hybrid_3crs_real *V, const hybrid_3crs_real *tau, const
     hybrid_3crs_real *wrench, hybrid_3crs_real *A, int *status);
 
-/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
-   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
+/* A with the entries of passive extra coordinates that the others allow. It is A: there are no
+   passive extra coordinates, whose accelerations would follow. In: X (NQ), V (NV), A (NV), wrench
+   (NW, or NULL). Out: completed (NV). */
 int hybrid_3crs_complete_acceleration(const hybrid_3crs_model *model, const hybrid_3crs_real *X,
     const hybrid_3crs_real *V, const hybrid_3crs_real *A, const hybrid_3crs_real *wrench,
     hybrid_3crs_real *completed);
@@ -201,9 +205,9 @@ size_t hybrid_3crs_complete_acceleration_batch(const hybrid_3crs_model *model, s
     hybrid_3crs_real *X, const hybrid_3crs_real *V, const hybrid_3crs_real *A, const
     hybrid_3crs_real *wrench, hybrid_3crs_real *completed, int *status);
 
-/* Force of each leg on the platform at its platform joint, base axes. 648 mul, 471 add, 9 div, 6
-   sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
-   forces (3 x 3). */
+/* Force of each leg on the platform at its platform joint, base axes. The actuators give the
+   forces of inverse_dynamics. 648 mul, 471 add, 9 div, 6 sqrt, 0 trig; inverse dynamics apart.
+   In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (3 x 3). */
 int hybrid_3crs_leg_reactions(const hybrid_3crs_model *model, const hybrid_3crs_real *X, const
     hybrid_3crs_real *V, const hybrid_3crs_real *A, const hybrid_3crs_real *wrench,
     hybrid_3crs_real *forces);
@@ -211,40 +215,94 @@ size_t hybrid_3crs_leg_reactions_batch(const hybrid_3crs_model *model, size_t n,
     hybrid_3crs_real *X, const hybrid_3crs_real *V, const hybrid_3crs_real *A, const
     hybrid_3crs_real *wrench, hybrid_3crs_real *forces, int *status);
 
-/* Kinetic and potential energy; the latter is zero at the base origin. In: X (NQ), V (NV). Out:
-   kinetic (1), potential (1). */
+/* Kinetic and potential energy [J]; the latter is zero at the base origin. In: X (NQ), V (NV).
+   Out: kinetic (1), potential (1). */
 int hybrid_3crs_energy(const hybrid_3crs_model *model, const hybrid_3crs_real *X, const
     hybrid_3crs_real *V, hybrid_3crs_real *kinetic, hybrid_3crs_real *potential);
 size_t hybrid_3crs_energy_batch(const hybrid_3crs_model *model, size_t n, const hybrid_3crs_real
     *X, const hybrid_3crs_real *V, hybrid_3crs_real *kinetic, hybrid_3crs_real *potential, int
     *status);
 
-/* X at which the driven joints stand at q_actuated, by Gauss-Newton from X0; extra coordinates
-   that the drives do not determine stay. In: q_actuated (NU), X0 (NQ). Out: X (NQ). */
-int hybrid_3crs_forward_kinematics(const hybrid_3crs_model *model, const hybrid_3crs_real
-    *q_actuated, const hybrid_3crs_real *X0, hybrid_3crs_real *X);
-size_t hybrid_3crs_forward_kinematics_batch(const hybrid_3crs_model *model, size_t n, const
-    hybrid_3crs_real *q_actuated, const hybrid_3crs_real *X0, hybrid_3crs_real *X, int *status);
-
-/* Singular values of H in descending order, moment rows divided by the rms distance of the
-   platform points from their centroid; for every leg the least tested pivot as a fraction of its
-   scale. 274 mul, 180 add, 9 div, 10 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+/* How far a pose is from singularities: singular values of H, rows of moments divided by a
+   length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
+   distance of the platform points from their centroid, or where they coincide the rms size of the
+   legs. 274 mul, 180 add, 9 div, 10 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
    sigma (6), legs (3). */
 int hybrid_3crs_condition(const hybrid_3crs_model *model, const hybrid_3crs_real *X,
     hybrid_3crs_real *sigma, hybrid_3crs_real *legs);
 size_t hybrid_3crs_condition_batch(const hybrid_3crs_model *model, size_t n, const
     hybrid_3crs_real *X, hybrid_3crs_real *sigma, hybrid_3crs_real *legs, int *status);
 
-/* base_R_platform; a quaternion need not be normalised. In: X (NQ). Out: R (3 x 3). */
+/* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
+   that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
+   X0 (NQ). Out: X (NQ). */
+int hybrid_3crs_forward_kinematics(const hybrid_3crs_model *model, const hybrid_3crs_real
+    *q_actuated, const hybrid_3crs_real *X0, hybrid_3crs_real *X);
+size_t hybrid_3crs_forward_kinematics_batch(const hybrid_3crs_model *model, size_t n, const
+    hybrid_3crs_real *q_actuated, const hybrid_3crs_real *X0, hybrid_3crs_real *X, int *status);
+
+/* Power that friction takes, not negative; the rate of energy is power less this. In: X (NQ), V
+   (NV). Out: dissipation (1). */
+int hybrid_3crs_dissipation(const hybrid_3crs_model *model, const hybrid_3crs_real *X, const
+    hybrid_3crs_real *V, hybrid_3crs_real *dissipation);
+size_t hybrid_3crs_dissipation_batch(const hybrid_3crs_model *model, size_t n, const
+    hybrid_3crs_real *X, const hybrid_3crs_real *V, hybrid_3crs_real *dissipation, int *status);
+
+/* Generalised momentum M V. 558 mul, 423 add, 9 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+   momentum (NV). */
+int hybrid_3crs_momentum(const hybrid_3crs_model *model, const hybrid_3crs_real *X, const
+    hybrid_3crs_real *V, hybrid_3crs_real *momentum);
+size_t hybrid_3crs_momentum_batch(const hybrid_3crs_model *model, size_t n, const hybrid_3crs_real
+    *X, const hybrid_3crs_real *V, hybrid_3crs_real *momentum, int *status);
+
+/* Displacements of the actuated joints, in the order of tau. 93 mul, 72 add, 3 div, 6 sqrt, 6
+   trig. In: X (NQ). Out: q (NU). */
+int hybrid_3crs_actuator_positions(const hybrid_3crs_model *model, const hybrid_3crs_real *X,
+    hybrid_3crs_real *q);
+size_t hybrid_3crs_actuator_positions_batch(const hybrid_3crs_model *model, size_t n, const
+    hybrid_3crs_real *X, hybrid_3crs_real *q, int *status);
+
+/* Rates of the actuated joints, in the order of tau. 177 mul, 132 add, 9 div, 6 sqrt, 0 trig. In:
+   X (NQ), V (NV). Out: rates (NU). */
+int hybrid_3crs_actuator_rates(const hybrid_3crs_model *model, const hybrid_3crs_real *X, const
+    hybrid_3crs_real *V, hybrid_3crs_real *rates);
+size_t hybrid_3crs_actuator_rates_batch(const hybrid_3crs_model *model, size_t n, const
+    hybrid_3crs_real *X, const hybrid_3crs_real *V, hybrid_3crs_real *rates, int *status);
+
+/* Accelerations of the actuated joints, in the order of tau. 402 mul, 267 add, 9 div, 6 sqrt, 0
+   trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
+int hybrid_3crs_actuator_accelerations(const hybrid_3crs_model *model, const hybrid_3crs_real *X,
+    const hybrid_3crs_real *V, const hybrid_3crs_real *A, hybrid_3crs_real *accelerations);
+size_t hybrid_3crs_actuator_accelerations_batch(const hybrid_3crs_model *model, size_t n, const
+    hybrid_3crs_real *X, const hybrid_3crs_real *V, const hybrid_3crs_real *A, hybrid_3crs_real
+    *accelerations, int *status);
+
+/* Power that actuators give to the mechanism: tau times their rates. In: X (NQ), V (NV), tau
+   (NU). Out: power (1). */
+int hybrid_3crs_power(const hybrid_3crs_model *model, const hybrid_3crs_real *X, const
+    hybrid_3crs_real *V, const hybrid_3crs_real *tau, hybrid_3crs_real *power);
+size_t hybrid_3crs_power_batch(const hybrid_3crs_model *model, size_t n, const hybrid_3crs_real
+    *X, const hybrid_3crs_real *V, const hybrid_3crs_real *tau, hybrid_3crs_real *power, int
+    *status);
+
+/* base_R_platform at X; a quaternion need not be normalised. Impossible where the quaternion is
+   zero or its squared length overflows. In: X (NQ). Out: R (3 x 3). */
 int hybrid_3crs_rotation(const hybrid_3crs_real *X, hybrid_3crs_real *R);
 size_t hybrid_3crs_rotation_batch(size_t n, const hybrid_3crs_real *X, hybrid_3crs_real *R, int
     *status);
 
-/* X of the platform at origin t with rotation matrix R. INVALID where R has not orthonormal rows,
-   to 1e-06 (float: 1e-5), and determinant +1. In: t (3), R (3 x 3). Out: X (NQ). */
+/* X of the platform at origin t with rotation matrix R; extra coordinates zero. INVALID where R
+   has not orthonormal rows, to 1e-06 (float: 1e-5), and determinant +1. In: t (3), R (3 x 3).
+   Out: X (NQ). */
 int hybrid_3crs_pose(const hybrid_3crs_real *t, const hybrid_3crs_real *R, hybrid_3crs_real *X);
 size_t hybrid_3crs_pose_batch(size_t n, const hybrid_3crs_real *t, const hybrid_3crs_real *R,
     hybrid_3crs_real *X, int *status);
+
+/* Rate of X at the velocity V. In: X (NQ), V (NV). Out: X_dot (NQ). */
+int hybrid_3crs_X_dot(const hybrid_3crs_real *X, const hybrid_3crs_real *V, hybrid_3crs_real
+    *X_dot);
+size_t hybrid_3crs_X_dot_batch(size_t n, const hybrid_3crs_real *X, const hybrid_3crs_real *V,
+    hybrid_3crs_real *X_dot, int *status);
 
 /* X from roll, pitch, yaw about the fixed axes x, y, z, in that order. In: t (3), rpy (3). Out: X
    (NQ). */
@@ -253,11 +311,26 @@ int hybrid_3crs_pose_from_rpy(const hybrid_3crs_real *t, const hybrid_3crs_real 
 size_t hybrid_3crs_pose_from_rpy_batch(size_t n, const hybrid_3crs_real *t, const hybrid_3crs_real
     *rpy, hybrid_3crs_real *X, int *status);
 
-/* Rate of X at the velocity V. In: X (NQ), V (NV). Out: X_dot (NQ). */
-int hybrid_3crs_X_dot(const hybrid_3crs_real *X, const hybrid_3crs_real *V, hybrid_3crs_real
-    *X_dot);
-size_t hybrid_3crs_X_dot_batch(size_t n, const hybrid_3crs_real *X, const hybrid_3crs_real *V,
-    hybrid_3crs_real *X_dot, int *status);
+/* X moved by a displacement: (t + d, exp([phi]) R, y + dy) of step = (d, phi, dy). In: X (NQ),
+   step (NV). Out: X_moved (NQ). */
+int hybrid_3crs_retract(const hybrid_3crs_real *X, const hybrid_3crs_real *step, hybrid_3crs_real
+    *X_moved);
+size_t hybrid_3crs_retract_batch(size_t n, const hybrid_3crs_real *X, const hybrid_3crs_real
+    *step, hybrid_3crs_real *X_moved, int *status);
+
+/* The displacement from X0 to X1, the inverse of retract; rotations the shorter way. In: X0 (NQ),
+   X1 (NQ). Out: step (NV). */
+int hybrid_3crs_difference(const hybrid_3crs_real *X0, const hybrid_3crs_real *X1,
+    hybrid_3crs_real *step);
+size_t hybrid_3crs_difference_batch(size_t n, const hybrid_3crs_real *X0, const hybrid_3crs_real
+    *X1, hybrid_3crs_real *step, int *status);
+
+/* X0 moved by s times the displacement to X1: straight on, turning about one axis. In: X0 (NQ),
+   X1 (NQ), s (1). Out: X (NQ). */
+int hybrid_3crs_interpolate(const hybrid_3crs_real *X0, const hybrid_3crs_real *X1, const
+    hybrid_3crs_real *s, hybrid_3crs_real *X);
+size_t hybrid_3crs_interpolate_batch(size_t n, const hybrid_3crs_real *X0, const hybrid_3crs_real
+    *X1, const hybrid_3crs_real *s, hybrid_3crs_real *X, int *status);
 
 #ifdef __cplusplus
 }

@@ -16,6 +16,14 @@
 typedef hybrid_3prps_real real;
 typedef hybrid_3prps_model prepared;
 
+enum {
+    OK = HYBRID_3PRPS_OK,
+    UNREACHABLE = HYBRID_3PRPS_UNREACHABLE,
+    SINGULAR = HYBRID_3PRPS_SINGULAR,
+    INVALID = HYBRID_3PRPS_INVALID,
+    NOT_CONVERGED = HYBRID_3PRPS_NOT_CONVERGED
+};
+
 #define R(x) ((real)(x))
 #define UNLESS(condition) ((condition) ? R(0) : R(1))  /* flag of what must hold */
 #define LANES 8  /* states that a batch runs side by side */
@@ -64,6 +72,15 @@ INLINE real larger(real x, real y)
 INLINE real lesser(real x, real y)
 {
     return x < y || x != x ? x : y;
+}
+
+INLINE real largest(const real *x, size_t n)
+{
+    real size = 0;
+    for (size_t i = 0; i < n; ++i) {
+        size = magnitude(x[i]) > size ? magnitude(x[i]) : size;
+    }
+    return size;
 }
 
 INLINE real total(const real *x, size_t n)
@@ -126,26 +143,52 @@ INLINE void check(size_t size, size_t w, const real *x, real *flags)
 }
 
 /* Input, given state by state, with its states side by side: entry e of state k at e*w + k. */
-INLINE const real *take(size_t size, size_t w, const real *x, real *lanes, verdict *t)
+INLINE const real *side_by_side(size_t size, size_t w, const real *x, real *lanes, real *flags)
 {
     for (size_t e = 0; e < size && w > 1; ++e) {
         for (size_t k = 0; k < w; ++k) {
             lanes[e*w + k] = x[size*k + e];
         }
     }
-    check(size, w, w > 1 ? lanes : x, t->invalid);
+    check(size, w, w > 1 ? lanes : x, flags);
     return w > 1 ? lanes : x;
+}
+
+/* The same for input that may be NULL: then all its entries are `none`. */
+INLINE const real *optional(size_t size, size_t w, const real *x, real none, real *lanes, real *flags)
+{
+    for (size_t e = 0; e < size*w && !x; ++e) {
+        lanes[e] = none;
+    }
+    return x ? side_by_side(size, w, x, lanes, flags) : lanes;
+}
+
+/* Flag the states of an input, NULL or given state by state, with entries that are not positive. */
+INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
+{
+    for (size_t e = 0; e < size*w && x; ++e) {
+        flags[e/size] += UNLESS(x[e] > 0);
+    }
 }
 
 INLINE void judge(const verdict *t, size_t w, int *code)
 {
     for (size_t k = 0; k < w; ++k) {
-        code[k] = t->invalid[k] > 0 ? HYBRID_3PRPS_INVALID
-            : t->diverged[k] > 0 ? HYBRID_3PRPS_NOT_CONVERGED
-            : t->unreachable[k] > 0 ? HYBRID_3PRPS_UNREACHABLE
-            : t->singular[k] > 0 ? HYBRID_3PRPS_SINGULAR
-            : t->overflow[k] > 0 ? HYBRID_3PRPS_INVALID : HYBRID_3PRPS_OK;
+        code[k] = t->invalid[k] > 0 ? INVALID
+            : t->diverged[k] > 0 ? NOT_CONVERGED
+            : t->unreachable[k] > 0 ? UNREACHABLE
+            : t->singular[k] > 0 ? SINGULAR
+            : t->overflow[k] > 0 ? INVALID : OK;
     }
+}
+
+/* The same as flags, for one state. */
+INLINE void blame(int code, verdict *t)
+{
+    t->invalid[0] += UNLESS(code != INVALID);
+    t->diverged[0] += UNLESS(code != NOT_CONVERGED);
+    t->unreachable[0] += UNLESS(code != UNREACHABLE);
+    t->singular[0] += UNLESS(code != SINGULAR);
 }
 
 /* Outputs of an impossible state. */
@@ -165,7 +208,7 @@ INLINE void deliver(const real *x, size_t size, size_t w, const int *code, real 
         }
     }
     for (size_t k = 0; k < w; ++k) {
-        if (code[k] != HYBRID_3PRPS_OK) {
+        if (code[k] != OK) {
             refuse(size, out + size*k);
         }
     }
@@ -176,15 +219,13 @@ INLINE size_t record(const int *code, size_t w, int *status)
 {
     size_t failed = 0;
     for (size_t k = 0; k < w; ++k) {
-        failed += code[k] != HYBRID_3PRPS_OK;
+        failed += code[k] != OK;
         if (status) {
             status[k] = code[k];
         }
     }
     return failed;
 }
-
-/* ---- what parameters must be: entries of n vectors or 3 x 3 matrices one after another ---- */
 
 /* What the reader of specifications allows; floats have less to offer. */
 #define ROUNDED BY_TYPE(1e-5, 1e-06, 1e-06)  /* lengths and products of unit vectors */
@@ -200,29 +241,11 @@ INLINE int all_within(const real *x, size_t n)
     return ok;
 }
 
-INLINE int all_zero(const real *x, size_t n, size_t step)
-{
-    int ok = 1;
-    for (size_t i = 0; i < n; ++i) {
-        ok &= magnitude(x[step*i]) <= SNAPPED;
-    }
-    return ok;
-}
-
 INLINE int none_negative(const real *x, size_t n)
 {
     int ok = 1;
     for (size_t i = 0; i < n; ++i) {
         ok &= x[i] >= 0;
-    }
-    return ok;
-}
-
-INLINE int all_unit(const real *x, size_t n)
-{
-    int ok = 1;
-    for (size_t i = 0; i < n; ++i, x += 3) {
-        ok &= magnitude(root(x[0]*x[0] + x[1]*x[1] + x[2]*x[2]) - 1) <= ROUNDED;
     }
     return ok;
 }
@@ -334,6 +357,15 @@ const hybrid_3prps_params hybrid_3prps_default_params = {
 
 const hybrid_3prps_real hybrid_3prps_HOME_X[HYBRID_3PRPS_NQ] = {R(0.0), R(0.0), R(0.75), R(0.0), R(0.0), R(0.0), R(1.0)};
 const hybrid_3prps_real hybrid_3prps_HOME_Q[HYBRID_3PRPS_NJ] = {R(0.09999999999999999), R(-0.3499999999999998), R(0.75), R(0.10000000000000005), R(-0.3499999999999999), R(0.75), R(0.10000000000000002), R(-0.3499999999999999), R(0.75)};
+const size_t hybrid_3prps_ACTUATED[HYBRID_3PRPS_NU] = {0, 2, 3, 5, 6, 8};
+const char *const hybrid_3prps_ACTUATOR_NAMES[HYBRID_3PRPS_NU] = {
+    "leg1_joint1",
+    "leg1_joint3",
+    "leg2_joint1",
+    "leg2_joint3",
+    "leg3_joint1",
+    "leg3_joint3",
+};
 
 static int acceptable(const hybrid_3prps_params *p)
 {
@@ -370,7 +402,7 @@ int hybrid_3prps_prepare(const hybrid_3prps_params *params, hybrid_3prps_model *
 {
     if (!acceptable(params)) {
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
-        return HYBRID_3PRPS_INVALID;
+        return INVALID;
     }
     real total_prps = 0;
     real total_prps_x = 0;
@@ -630,10 +662,10 @@ int hybrid_3prps_prepare(const hybrid_3prps_params *params, hybrid_3prps_model *
     model->h_star_y = h_star_y;
     model->h_star_z = h_star_z;
     model->m_star = m_star;
-    return HYBRID_3PRPS_OK;
+    return OK;
 }
 
-/* ---- linear equations ---- */
+/* ---- operations ---- */
 
 /* Rows change places only for a pivot that is larger by this factor: less often, and with
    rounding errors as small as with the largest pivots. */
@@ -643,7 +675,7 @@ int hybrid_3prps_prepare(const hybrid_3prps_params *params, hybrid_3prps_model *
 #define NEARLY 2
 
 /* other -= factor*row */
-INLINE void subtract(size_t n, real factor, const real *restrict row, real *restrict other)
+INLINE void eliminate(size_t n, real factor, const real *restrict row, real *restrict other)
 {
     for (size_t j = 0; j < n; ++j) {
         other[j] -= factor*row[j];
@@ -689,7 +721,7 @@ INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict 
         *singular += UNLESS(magnitude(pivot[p]) > PIVOT);
         x[p] = 1/pivot[p];
         for (size_t i = p + 1; i < n; ++i) {
-            subtract(stride, a[i*stride + p]*x[p], pivot, a + i*stride);
+            eliminate(stride, a[i*stride + p]*x[p], pivot, a + i*stride);
         }
     }
     for (size_t p = n; p-- > 0;) {
@@ -792,27 +824,49 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
     }
 }
 
-/* Systems of w states side by side: entry (i, j) of state k is a[(i*stride + j)*w + k]. */
-INLINE void solve(size_t n, size_t stride, size_t w, real *a, real *x, real *singular)
+/* Length of the rows of a system of n equations, whose right side stands in column n. */
+INLINE size_t stride_of(size_t n, size_t w)
 {
-    if (w == 1) {
-        solve_one(n, stride, a, x, singular);
-    } else {
-        solve_lanes(n, a, x, singular);
-    }
+    return w == 1 ? (n + 4)/4*4 : n + 1;
 }
 
-/* Add the wrench to a generalised force; extra coordinates get none. */
-INLINE void add_wrench(const real *wrench, real sign, size_t w, real *force)
+INLINE void set_matrix(size_t n, size_t w, const real *a, real *rows)
 {
-    for (size_t k = 0; k < w; ++k) {
-        for (size_t e = 0; e < 6; ++e) {
-            force[e*w + k] += sign*wrench[e*w + k];
+    for (size_t i = 0; i < n; ++i) {
+        for (size_t e = 0; e < n*w; ++e) {
+            rows[i*stride_of(n, w)*w + e] = a[i*n*w + e];
         }
     }
 }
 
-#define BIG 6  /* largest number of rows or columns of what follows */
+INLINE void set_right_side(size_t n, size_t w, const real *b, real *rows)
+{
+    const size_t stride = stride_of(n, w);
+    for (size_t i = 0; i < n; ++i) {
+        for (size_t e = n*w; e < stride*w; ++e) {
+            rows[i*stride*w + e] = e < (n + 1)*w ? b[i*w + e - n*w] : 0;
+        }
+    }
+}
+
+/* x with a x = b, where a stands in rows; of one state, and of w, one or LANES, side by side. */
+INLINE void solve_state(size_t n, const real *b, real *rows, real *x, real *singular)
+{
+    set_right_side(n, 1, b, rows);
+    solve_one(n, stride_of(n, 1), rows, x, singular);
+}
+
+INLINE void solve(size_t n, size_t w, const real *b, real *rows, real *x, real *singular)
+{
+    if (w == 1) {
+        solve_state(n, b, rows, x, singular);
+    } else {
+        set_right_side(n, LANES, b, rows);
+        solve_lanes(n, rows, x, singular);
+    }
+}
+
+#define BIG 6  /* most rows or columns of a matrix that is not square, or not solved */
 
 /* Reflect rows p, p + 1, ... so that column p is zero below row p; columns beyond go along.
    The reflection's vector is left in column p, the diagonal entry is returned. */
@@ -839,7 +893,7 @@ INLINE real reflect(size_t rows, size_t stride, size_t p, real *a)
 
 /* The shortest x with a x = b for independent rows of a[rows][columns]; returns the smallest
    diagonal entry of the triangle of a^T as a fraction of the largest. */
-static real least_norm(size_t rows, size_t columns, const real *a, const real *b, real *x)
+static real shortest(size_t rows, size_t columns, const real *a, const real *b, real *x)
 {
     real t[BIG*BIG] = {0}, diagonal[BIG] = {0}, u[BIG] = {0}, least = 0, most = 0;
     for (size_t i = 0; i < rows; ++i) {
@@ -918,16 +972,159 @@ static void least_squares(size_t rows, size_t n, real *a, real *x)
     }
     clear(x, n);
     if (rank) {
-        least_norm(rank, n, r, b, x);
+        shortest(rank, n, r, b, x);
     }
 }
+
+/* Turn columns p and q of a[rows][columns] until they are perpendicular; returns whether they were
+   not, to rounding. */
+static int turn_columns(size_t rows, size_t columns, size_t p, size_t q, real *a)
+{
+    real pp = 0, qq = 0, pq = 0;
+    for (size_t i = 0; i < rows; ++i) {
+        pp += a[i*columns + p]*a[i*columns + p];
+        qq += a[i*columns + q]*a[i*columns + q];
+        pq += a[i*columns + p]*a[i*columns + q];
+    }
+    if (!(magnitude(pq) > ROUNDING*root(pp)*root(qq))) {
+        return 0;
+    }
+    const real cotangent = (qq - pp)/(2*pq), size = magnitude(cotangent);
+    const real t = (cotangent < 0 ? -1 : 1)/(size + root(1 + size*size));
+    const real c = 1/root(1 + t*t), s = c*t;
+    for (size_t i = 0; i < rows; ++i) {
+        const real x = a[i*columns + p], y = a[i*columns + q];
+        a[i*columns + p] = c*x - s*y;
+        a[i*columns + q] = s*x + c*y;
+    }
+    return 1;
+}
+
+/* Singular values of a[m][n] in descending order, by one-sided Jacobi rotations. */
+INLINE void singular_values(size_t m, size_t n, const real *a, real *sigma)
+{
+    const size_t rows = m < n ? n : m, columns = m < n ? m : n;
+    const real size = largest(a, m*n);
+    real t[BIG*BIG] = {0};
+    clear(sigma, columns);
+    for (size_t i = 0; i < m; ++i) {
+        for (size_t j = 0; j < n; ++j) {
+            t[m < n ? j*m + i : i*n + j] = size > 0 ? a[i*n + j]/size : a[i*n + j];
+        }
+    }
+    for (int sweep = 0, turned = 1; sweep < 40 && turned; ++sweep) {
+        turned = 0;
+        for (size_t p = 0; p < columns; ++p) {
+            for (size_t q = p + 1; q < columns; ++q) {
+                turned |= turn_columns(rows, columns, p, q, t);
+            }
+        }
+    }
+    for (size_t j = 0; j < columns; ++j) {
+        real sum = 0;
+        for (size_t i = 0; i < rows; ++i) {
+            sum += t[i*columns + j]*t[i*columns + j];
+        }
+        const real value = size*root(sum);
+        size_t place = j;
+        for (; place > 0 && sigma[place - 1] < value; --place) {
+            sigma[place] = sigma[place - 1];
+        }
+        sigma[place] = value;
+    }
+}
+
+/* a b, a[m][n], b[n][p]: entry (i, j) of state k of a matrix with n columns is [(i*n + j)*w + k]. */
+INLINE void product(size_t m, size_t n, size_t p, size_t w, const real *a, const real *b, real *x)
+{
+    for (size_t i = 0; i < m; ++i) {
+        for (size_t c = 0; c < p; ++c) {
+            for (size_t k = 0; k < w; ++k) {
+                real sum = 0;
+                for (size_t j = 0; j < n; ++j) {
+                    sum += a[(i*n + j)*w + k]*b[(j*p + c)*w + k];
+                }
+                x[(i*p + c)*w + k] = sum;
+            }
+        }
+    }
+}
+
+/* a . b */
+INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
+{
+    clear(x, w);
+    for (size_t i = 0; i < n; ++i) {
+        for (size_t k = 0; k < w; ++k) {
+            x[k] += a[i*w + k]*b[i*w + k];
+        }
+    }
+}
+
+/* Half of a^T b a. */
+INLINE void half_form(size_t n, size_t w, const real *a, const real *b, real *x)
+{
+    for (size_t k = 0; k < w; ++k) {
+        real sum = 0;
+        for (size_t i = 0; i < n; ++i) {
+            for (size_t j = 0; j < n; ++j) {
+                sum += a[i*w + k]*b[(i*n + j)*w + k]*a[j*w + k];
+            }
+        }
+        x[k] = sum/2;
+    }
+}
+
+/* Rows of n entries, as `places` tells. */
+INLINE void take(size_t rows, size_t n, const size_t *places, const real *a, real *x)
+{
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t e = 0; e < n; ++e) {
+            x[i*n + e] = a[places[i]*n + e];
+        }
+    }
+}
+
+INLINE void divide_rows(size_t rows, size_t n, size_t w, const size_t *places, const real *b, real *x)
+{
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t e = 0; e < n*w; ++e) {
+            x[places[i]*n*w + e] /= b[e%w];
+        }
+    }
+}
+
+/* Rows of a with n entries, each followed by that of b with p entries. */
+INLINE void beside(size_t rows, size_t n, size_t p, const real *a, const real *b, real *x)
+{
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t e = 0; e < n; ++e) {
+            x[i*(n + p) + e] = a[i*n + e];
+        }
+        for (size_t e = 0; e < p; ++e) {
+            x[i*(n + p) + n + e] = b[i*p + e];
+        }
+    }
+}
+
+/* To row places[i] of x: the row c[i] of n entries times b[i]. */
+INLINE void add_forces(size_t rows, size_t n, size_t w, const size_t *places, const real *b,
+        const real *c, real *x)
+{
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t e = 0; e < n*w; ++e) {
+            x[places[i]*n*w + e] += b[i*w + e%w]*c[i*n*w + e];
+        }
+    }
+}
+
+#define TINY R(1e-09)  /* a length below this fraction of the legs' size is none */
 
 /* A quaternion with largest entry 1, so that squares of tiny ones keep their digits; NaN if it is
    zero or its squared length overflows. */
 INLINE void scaled(const real *p, real *to)
 {
-    const real size = larger(larger(magnitude(p[0]), magnitude(p[1])),
-        larger(magnitude(p[2]), magnitude(p[3])));
+    const real size = largest(p, 4);
     const int ok = is_finite(p[0]*p[0] + p[1]*p[1] + p[2]*p[2] + p[3]*p[3]) && size > 0;
     for (size_t i = 0; i < 4; ++i) {
         to[i] = ok ? p[i]/size : R(NAN);
@@ -945,49 +1142,109 @@ INLINE void unit(const real *p, real *to)
     }
 }
 
-/* Residuals [m, rad] at which iterations stop, and that count as solved. */
+INLINE void rotation_of_quaternion(const real *a, real *to)
+{
+    real p[4];
+    scaled(a, p);
+    const real x = p[0], y = p[1], z = p[2], w = p[3];
+    const real xx = x*x, yy = y*y, zz = z*z, ww = w*w, n = xx + yy + zz + ww;
+    const real entries[9] = {
+        (xx + ww - (yy + zz))/n, 2*(x*y - w*z)/n, 2*(x*z + w*y)/n,
+        2*(x*y + w*z)/n, (yy + ww - (xx + zz))/n, 2*(y*z - w*x)/n,
+        2*(x*z - w*y)/n, 2*(y*z + w*x)/n, (zz + ww - (xx + yy))/n
+    };
+    memcpy(to, entries, sizeof entries);
+}
+
+/* NaN for what is no rotation matrix. */
+INLINE void quaternion_of_rotation(const real *a, real *p)
+{
+    const real x = a[0], y = a[4], z = a[8];
+    const real s[3] = {a[7] + a[5], a[2] + a[6], a[3] + a[1]};
+    const real d[3] = {a[7] - a[5], a[2] - a[6], a[3] - a[1]};
+    /* each candidate is four times the quaternion times one of its entries; take the longest */
+    const real candidates[4][4] = {
+        {1 + x - y - z, s[2], s[1], d[0]}, {s[2], 1 - x + y - z, s[0], d[1]},
+        {s[1], s[0], 1 - x - y + z, d[2]}, {d[0], d[1], d[2], 1 + x + y + z}
+    };
+    real most = 0;
+    size_t best = 0;
+    for (size_t i = 0; i < 4; ++i) {
+        const real *const c = candidates[i], n = c[0]*c[0] + c[1]*c[1] + c[2]*c[2] + c[3]*c[3];
+        best = n > most ? i : best;
+        most = n > most ? n : most;
+    }
+    unit(candidates[best], p);
+    if (!all_rotations(a, 1)) {
+        refuse(4, p);
+    }
+}
+
+INLINE void quaternion_of_rpy(const real *a, real *p)
+{
+    const real cx = cosine(a[0]/2), cy = cosine(a[1]/2), cz = cosine(a[2]/2);
+    const real sx = sine(a[0]/2), sy = sine(a[1]/2), sz = sine(a[2]/2);
+    p[0] = sx*cy*cz - cx*sy*sz;
+    p[1] = cx*sy*cz + sx*cy*sz;
+    p[2] = cx*cy*sz - sx*sy*cz;
+    p[3] = cx*cy*cz + sx*sy*sz;
+}
+
+INLINE void quaternion_rate(const real *p, const real *b, real *x)
+{
+    x[0] = (p[3]*b[0] + b[1]*p[2] - b[2]*p[1])/2;
+    x[1] = (p[3]*b[1] + b[2]*p[0] - b[0]*p[2])/2;
+    x[2] = (p[3]*b[2] + b[0]*p[1] - b[1]*p[0])/2;
+    x[3] = -(p[0]*b[0] + p[1]*b[1] + p[2]*b[2])/2;
+}
+
+/* The quaternion p turned by the rotation vector v, made of length 1. */
+INLINE void turn_quaternion(const real *p, const real *v, real *to)
+{
+    const real half = root(v[0]*v[0] + v[1]*v[1] + v[2]*v[2])/2;
+    const real c = cosine(half), f = magnitude(half) > 0 ? sine(half)/half/2 : R(0.5);
+    const real a[3] = {f*v[0], f*v[1], f*v[2]};
+    real b[4];
+    unit(p, b);
+    to[0] = c*b[0] + b[3]*a[0] + a[1]*b[2] - a[2]*b[1];
+    to[1] = c*b[1] + b[3]*a[1] + a[2]*b[0] - a[0]*b[2];
+    to[2] = c*b[2] + b[3]*a[2] + a[0]*b[1] - a[1]*b[0];
+    to[3] = c*b[3] - a[0]*b[0] - a[1]*b[1] - a[2]*b[2];
+}
+
+/* The shortest rotation vector that turns the quaternion a to b. */
+INLINE void turn_between(const real *a, const real *b, real *v)
+{
+    real p[4], q[4];
+    unit(a, p);
+    unit(b, q);
+    v[0] = p[3]*q[0] - q[3]*p[0] - (q[1]*p[2] - q[2]*p[1]);
+    v[1] = p[3]*q[1] - q[3]*p[1] - (q[2]*p[0] - q[0]*p[2]);
+    v[2] = p[3]*q[2] - q[3]*p[2] - (q[0]*p[1] - q[1]*p[0]);
+    const real c = p[0]*q[0] + p[1]*q[1] + p[2]*q[2] + p[3]*q[3];
+    const real s = root(v[0]*v[0] + v[1]*v[1] + v[2]*v[2]);
+    const real factor = (c < 0 ? -2 : 2)*(s > 0 ? angle(s, magnitude(c))/s : R(1));
+    for (size_t i = 0; i < 3; ++i) {
+        v[i] *= factor;
+    }
+}
+
+/* Residuals [m, rad] at which searches stop, with steps that are halved and without, and that count
+   as solved. */
 #define CLOSED BY_TYPE(5e-5, 1e-13, 1e-16)
-#define CONVERGED BY_TYPE(1e-4, 1e-9, 1e-9)
-
-INLINE real largest(const real *x, size_t n)
-{
-    real size = 0;
-    for (size_t i = 0; i < n; ++i) {
-        size = magnitude(x[i]) > size ? magnitude(x[i]) : size;
-    }
-    return size;
-}
-
-/* Rows of [h^T | gap], h[6][n]. */
-INLINE void fill_rows(size_t n, const real *h, const real *gap, real *a)
-{
-    for (size_t i = 0; i < n; ++i) {
-        for (size_t j = 0; j < 6; ++j) {
-            a[i*7 + j] = h[j*n + i];
-        }
-        a[i*7 + 6] = gap[i];
-    }
-}
+#define MET BY_TYPE(5e-6, 1e-14, 1e-17)
+#define CONVERGED BY_TYPE(1e-4, 1e-09, 1e-09)
 
 /* X moved by a part of a small step: the quaternion turns by its angular part. */
 static void moved(const real *X, const real *step, real part, real *to)
 {
-    const real *const p = X + 3, *const v = step + 3;
-    const real half = part*root(v[0]*v[0] + v[1]*v[1] + v[2]*v[2])/2;
-    const real c = cosine(half), f = magnitude(half) > 0 ? part*sine(half)/half/2 : part/2;
-    const real a[3] = {f*v[0], f*v[1], f*v[2]};
-    real b[4];
-    unit(p, b);
-    for (size_t i = 0; i < 3; ++i) {
-        to[i] = X[i] + part*step[i];
+    enum { Q = 3 };
+    const real turn[3] = {part*step[Q], part*step[Q + 1], part*step[Q + 2]};
+    for (size_t i = 0; i < 6; ++i) {
+        const size_t e = i + (i > Q + 2);
+        to[e] = X[e] + part*step[i];
     }
-    to[3] = c*b[0] + b[3]*a[0] + a[1]*b[2] - a[2]*b[1];
-    to[4] = c*b[1] + b[3]*a[1] + a[2]*b[0] - a[0]*b[2];
-    to[5] = c*b[2] + b[3]*a[2] + a[0]*b[1] - a[1]*b[0];
-    to[6] = c*b[3] - a[0]*b[0] - a[1]*b[1] - a[2]*b[2];
-    for (size_t i = 7; i < 7; ++i) {
-        to[i] = X[i] + part*step[i - 1];
-    }
+    turn_quaternion(X + Q, turn, to + Q);
 }
 
 /* ---- functions of the state: M, Z, H and the like ---- */
@@ -1580,24 +1837,6 @@ INLINE void dynamics_run(const prepared *m, size_t w, const real *X, const real 
     dynamics_after(m, w, s, M, Z);
 }
 
-INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real *V, real *M, real
-    *Z, real *H, int *code)
-{
-    real X_in[7*LANES], V_in[6*LANES], M_of[36*LANES], Z_of[6*LANES], H_of[36*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    X = take(7, w, X, X_in, t);
-    V = take(6, w, V, V_in, t);
-    dynamics_run(m, w, X, V, M_of, Z_of, H_of, t);
-    check(36, w, M_of, t->overflow);
-    check(6, w, Z_of, t->overflow);
-    check(36, w, H_of, t->overflow);
-    judge(t, w, code);
-    deliver(M_of, 36, w, code, M);
-    deliver(Z_of, 6, w, code, Z);
-    deliver(H_of, 36, w, code, H);
-}
-
 /* ---- M: 291 mul, 273 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
@@ -1976,18 +2215,6 @@ INLINE void M_run(const prepared *m, size_t w, const real *X, real *M, verdict *
     M_after(m, w, s, M);
 }
 
-INLINE void M_any(const prepared *m, size_t w, const real *X, real *M, int *code)
-{
-    real X_in[7*LANES], M_of[36*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    X = take(7, w, X, X_in, t);
-    M_run(m, w, X, M_of, t);
-    check(36, w, M_of, t->overflow);
-    judge(t, w, code);
-    deliver(M_of, 36, w, code, M);
-}
-
 /* ---- Z: 354 mul, 267 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
@@ -2346,19 +2573,6 @@ INLINE void Z_run(const prepared *m, size_t w, const real *X, const real *V, rea
     Z_after(w, s, Z);
 }
 
-INLINE void Z_any(const prepared *m, size_t w, const real *X, const real *V, real *Z, int *code)
-{
-    real X_in[7*LANES], V_in[6*LANES], Z_of[6*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    X = take(7, w, X, X_in, t);
-    V = take(6, w, V, V_in, t);
-    Z_run(m, w, X, V, Z_of, t);
-    check(6, w, Z_of, t->overflow);
-    judge(t, w, code);
-    deliver(Z_of, 6, w, code, Z);
-}
-
 /* ---- H: 114 mul, 78 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
@@ -2545,18 +2759,6 @@ INLINE void H_run(const prepared *m, size_t w, const real *X, real *H, verdict *
             H_place_prps(w, &results_prps, leg, 0, H, t);
         }
     }
-}
-
-INLINE void H_any(const prepared *m, size_t w, const real *X, real *H, int *code)
-{
-    real X_in[7*LANES], H_of[36*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    X = take(7, w, X, X_in, t);
-    H_run(m, w, X, H_of, t);
-    check(36, w, H_of, t->overflow);
-    judge(t, w, code);
-    deliver(H_of, 36, w, code, H);
 }
 
 /* ---- required: 432 mul, 339 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
@@ -3147,18 +3349,6 @@ INLINE void inverse_kinematics_run(const prepared *m, size_t w, const real *X, r
     }
 }
 
-INLINE void inverse_kinematics_any(const prepared *m, size_t w, const real *X, real *q, int *code)
-{
-    real X_in[7*LANES], q_of[9*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    X = take(7, w, X, X_in, t);
-    inverse_kinematics_run(m, w, X, q_of, t);
-    check(9, w, q_of, t->overflow);
-    judge(t, w, code);
-    deliver(q_of, 9, w, code, q);
-}
-
 /* ---- joint_rates: 144 mul, 105 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
@@ -3354,20 +3544,6 @@ INLINE void joint_rates_run(const prepared *m, size_t w, const real *X, const re
             joint_rates_place_prps(w, &results_prps, leg, 0, qd, t);
         }
     }
-}
-
-INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *rates, int *code)
-{
-    real X_in[7*LANES], V_in[6*LANES], qd_of[9*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    X = take(7, w, X, X_in, t);
-    V = take(6, w, V, V_in, t);
-    joint_rates_run(m, w, X, V, qd_of, t);
-    check(9, w, qd_of, t->overflow);
-    judge(t, w, code);
-    deliver(qd_of, 9, w, code, rates);
 }
 
 /* ---- joint_accelerations: 213 mul, 159 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
@@ -3618,21 +3794,6 @@ INLINE void joint_accelerations_run(const prepared *m, size_t w, const real *X, 
             joint_accelerations_place_prps(w, &results_prps, leg, 0, qdd, t);
         }
     }
-}
-
-INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *accelerations, int *code)
-{
-    real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], qdd_of[9*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    X = take(7, w, X, X_in, t);
-    V = take(6, w, V, V_in, t);
-    A = take(6, w, A, A_in, t);
-    joint_accelerations_run(m, w, X, V, A, qdd_of, t);
-    check(9, w, qdd_of, t->overflow);
-    judge(t, w, code);
-    deliver(qdd_of, 9, w, code, accelerations);
 }
 
 /* ---- legs: 294 mul, 222 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
@@ -4383,372 +4544,565 @@ INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, r
     condition_after(m, w, s, lengths);
 }
 
-/* ---- forces and accelerations ---- */
+/* ---- what users call, as steps over these ---- */
 
-INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, const real *V,
-        const real *A, const real *wrench, real *tau, int *code)
+INLINE void M_any(const prepared *m, size_t w, const real *X, real *M_out, int *code)
 {
-    static const size_t rows[] = {0, 1, 2, 3, 4, 5};  /* on which drives act */
-    enum { N = 6, PADDED = 8 };
-    const size_t stride = w == 1 ? PADDED : N + 1;
-    real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], wrench_in[6*LANES];
-    real force[6*LANES], H[36*LANES], a[N*PADDED*LANES], x[N*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    X = take(7, w, X, X_in, t);
-    V = take(6, w, V, V_in, t);
-    A = take(6, w, A, A_in, t);
-    required_run(m, w, X, V, A, force, H, t);
-    if (wrench) {
-        add_wrench(take(6, w, wrench, wrench_in, t), -1, w, force);
-    }
-    for (size_t i = 0; i < N; ++i) {
-        for (size_t j = 0; j < stride; ++j) {
-            for (size_t k = 0; k < w; ++k) {
-                a[(i*stride + j)*w + k] = j < 6 ? H[(rows[i]*6 + j)*w + k]
-                    : j == N ? force[rows[i]*w + k] : 0;
-            }
-        }
-    }
-    solve(N, stride, w, a, x, t->singular);
-    check(N, w, x, t->overflow);
-    judge(t, w, code);
-    deliver(x, 6, w, code, tau);
+    real X_in[7*LANES], M[36*LANES];
+    verdict why;
+    start(w, &why);
+    X = side_by_side(7, w, X, X_in, why.invalid);
+    M_run(m, w, X, M, &why);
+    check(36, w, M, why.overflow);
+    judge(&why, w, code);
+    deliver(M, 36, w, code, M_out);
 }
 
-INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, const real *V,
-        const real *tau, const real *wrench, real *A, int *code)
+INLINE void Z_any(const prepared *m, size_t w, const real *X, const real *V, real *Z_out, int
+    *code)
 {
-    enum { N = 6, PADDED = 8 };
-    const size_t stride = w == 1 ? PADDED : N + 1;
-    real X_in[7*LANES], V_in[6*LANES], tau_in[6*LANES], wrench_in[6*LANES];
-    real M[36*LANES], Z[6*LANES], H[36*LANES];
-    real force[6*LANES], a[N*PADDED*LANES], x[N*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    X = take(7, w, X, X_in, t);
-    V = take(6, w, V, V_in, t);
-    tau = take(6, w, tau, tau_in, t);
-    dynamics_run(m, w, X, V, M, Z, H, t);
+    real X_in[7*LANES], V_in[6*LANES], Z[6*LANES];
+    verdict why;
+    start(w, &why);
+    X = side_by_side(7, w, X, X_in, why.invalid);
+    V = side_by_side(6, w, V, V_in, why.invalid);
+    Z_run(m, w, X, V, Z, &why);
+    check(6, w, Z, why.overflow);
+    judge(&why, w, code);
+    deliver(Z, 6, w, code, Z_out);
+}
+
+INLINE void H_any(const prepared *m, size_t w, const real *X, real *H_out, int *code)
+{
+    real X_in[7*LANES], H[36*LANES];
+    verdict why;
+    start(w, &why);
+    X = side_by_side(7, w, X, X_in, why.invalid);
+    H_run(m, w, X, H, &why);
+    check(36, w, H, why.overflow);
+    judge(&why, w, code);
+    deliver(H, 36, w, code, H_out);
+}
+
+INLINE void inverse_kinematics_any(const prepared *m, size_t w, const real *X, real *q_out, int
+    *code)
+{
+    real X_in[7*LANES], q[9*LANES];
+    verdict why;
+    start(w, &why);
+    X = side_by_side(7, w, X, X_in, why.invalid);
+    inverse_kinematics_run(m, w, X, q, &why);
+    check(9, w, q, why.overflow);
+    judge(&why, w, code);
+    deliver(q, 9, w, code, q_out);
+}
+
+INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
+    *qd_out, int *code)
+{
+    real X_in[7*LANES], V_in[6*LANES], qd[9*LANES];
+    verdict why;
+    start(w, &why);
+    X = side_by_side(7, w, X, X_in, why.invalid);
+    V = side_by_side(6, w, V, V_in, why.invalid);
+    joint_rates_run(m, w, X, V, qd, &why);
+    check(9, w, qd, why.overflow);
+    judge(&why, w, code);
+    deliver(qd, 9, w, code, qd_out);
+}
+
+INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
+    const real *A, real *qdd_out, int *code)
+{
+    real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], qdd[9*LANES];
+    verdict why;
+    start(w, &why);
+    X = side_by_side(7, w, X, X_in, why.invalid);
+    V = side_by_side(6, w, V, V_in, why.invalid);
+    A = side_by_side(6, w, A, A_in, why.invalid);
+    joint_accelerations_run(m, w, X, V, A, qdd, &why);
+    check(9, w, qdd, why.overflow);
+    judge(&why, w, code);
+    deliver(qdd, 9, w, code, qdd_out);
+}
+
+INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real *V, real *M_out,
+    real *Z_out, real *H_out, int *code)
+{
+    real X_in[7*LANES], V_in[6*LANES], M[36*LANES], Z[6*LANES], H[36*LANES];
+    verdict why;
+    start(w, &why);
+    X = side_by_side(7, w, X, X_in, why.invalid);
+    V = side_by_side(6, w, V, V_in, why.invalid);
+    dynamics_run(m, w, X, V, M, Z, H, &why);
+    check(36, w, M, why.overflow);
+    check(6, w, Z, why.overflow);
+    check(36, w, H, why.overflow);
+    judge(&why, w, code);
+    deliver(M, 36, w, code, M_out);
+    deliver(Z, 6, w, code, Z_out);
+    deliver(H, 36, w, code, H_out);
+}
+
+INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, const real *V, const
+    real *A, const real *wrench, real *tau_out, int *code)
+{
+    real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], wrench_in[6*LANES], required[6*LANES],
+        H[36*LANES], subtract_2[6*LANES], tau[6*LANES], work[48*LANES];
+    verdict why;
+    start(w, &why);
+    X = side_by_side(7, w, X, X_in, why.invalid);
+    V = side_by_side(6, w, V, V_in, why.invalid);
+    A = side_by_side(6, w, A, A_in, why.invalid);
+    wrench = optional(6, w, wrench, 0, wrench_in, why.invalid);
+    required_run(m, w, X, V, A, required, H, &why);
+    const real *const extend_1 = wrench;
+    for (size_t i = 0; i < 6*w; ++i) {
+        subtract_2[i] = required[i] - extend_1[i];
+    }
+    set_matrix(6, w, H, work);
+    solve(6, w, subtract_2, work, tau, why.singular);
+    check(6, w, tau, why.overflow);
+    judge(&why, w, code);
+    deliver(tau, 6, w, code, tau_out);
+}
+
+INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, const real *V, const
+    real *tau, const real *wrench, real *A_out, int *code)
+{
+    real X_in[7*LANES], V_in[6*LANES], tau_in[6*LANES], wrench_in[6*LANES], M[36*LANES], Z[6*LANES],
+        H[36*LANES], times_1[6*LANES] = {0}, add_3[6*LANES], subtract_4[6*LANES], A[6*LANES],
+        work[48*LANES];
+    verdict why;
+    start(w, &why);
+    X = side_by_side(7, w, X, X_in, why.invalid);
+    V = side_by_side(6, w, V, V_in, why.invalid);
+    tau = side_by_side(6, w, tau, tau_in, why.invalid);
+    wrench = optional(6, w, wrench, 0, wrench_in, why.invalid);
+    dynamics_run(m, w, X, V, M, Z, H, &why);
+    product(6, 6, 1, w, H, tau, times_1);
+    const real *const extend_2 = wrench;
+    for (size_t i = 0; i < 6*w; ++i) {
+        add_3[i] = times_1[i] + extend_2[i];
+    }
+    for (size_t i = 0; i < 6*w; ++i) {
+        subtract_4[i] = add_3[i] - Z[i];
+    }
+    set_matrix(6, w, M, work);
+    solve(6, w, subtract_4, work, A, why.singular);
+    check(6, w, A, why.overflow);
+    judge(&why, w, code);
+    deliver(A, 6, w, code, A_out);
+}
+
+INLINE void complete_acceleration_any(const real *A, real *completed_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(6, 1, A, why.invalid);
+    const real *const completed = A;
+    check(6, 1, completed, why.overflow);
+    judge(&why, 1, code);
+    deliver(completed, 6, 1, code, completed_out);
+}
+
+INLINE void leg_reactions_any(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *forces_out, int *code)
+{
+    static const size_t places_0[] = {0, 0, 1, 1, 2, 2};
+    real wrench_in[6], required[6] = {0}, H[36] = {0}, subtract_2[6] = {0}, solve_3[6] = {0},
+        leg_force[9] = {0}, drive[18] = {0}, forces[9] = {0}, work[48];
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    check(6, 1, V, why.invalid);
+    check(6, 1, A, why.invalid);
+    wrench = optional(6, 1, wrench, 0, wrench_in, why.invalid);
+    required_run(m, 1, X, V, A, required, H, &why);
+    const real *const extend_1 = wrench;
     for (size_t i = 0; i < 6; ++i) {
-        for (size_t k = 0; k < w; ++k) {
-            real sum = -Z[i*w + k];
-            for (size_t j = 0; j < 6; ++j) {
-                sum += H[(i*6 + j)*w + k]*tau[j*w + k];
-            }
-            force[i*w + k] = sum;
-        }
+        subtract_2[i] = required[i] - extend_1[i];
     }
-    if (wrench) {
-        add_wrench(take(6, w, wrench, wrench_in, t), 1, w, force);
+    set_matrix(6, 1, H, work);
+    solve_state(6, subtract_2, work, solve_3, why.singular);
+    legs_run(m, 1, X, V, A, leg_force, drive, &why);
+    for (size_t i = 0; i < 9; ++i) {
+        forces[i] = leg_force[i];
     }
-    memset(a, 0, N*stride*w*sizeof *a);
+    add_forces(6, 3, 1, places_0, solve_3, drive, forces);
+    check(9, 1, forces, why.overflow);
+    judge(&why, 1, code);
+    deliver(forces, 9, 1, code, forces_out);
+}
+
+INLINE void energy_any(const prepared *m, const real *X, const real *V, real *kinetic_out, real
+    *potential_out, int *code)
+{
+    real M[36] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    check(6, 1, V, why.invalid);
+    M_run(m, 1, X, M, &why);
+    potential_run(m, 1, X, potential_of_potential, &why);
+    half_form(6, 1, V, M, kinetic);
+    const real *const potential = potential_of_potential;
+    check(1, 1, kinetic, why.overflow);
+    check(1, 1, potential, why.overflow);
+    judge(&why, 1, code);
+    deliver(kinetic, 1, 1, code, kinetic_out);
+    deliver(potential, 1, 1, code, potential_out);
+}
+
+INLINE void condition_any(const prepared *m, const real *X, const real *length, real *sigma_out,
+    real *legs_out, int *code)
+{
+    static const size_t places_0[] = {3, 4, 5};
+    real length_in[1], H[36] = {0}, lengths[2] = {0}, legs[3] = {0}, reach[3] = {0},
+        choose_length_1[1] = {0}, divide_rows_2[36] = {0}, sigma[6] = {0};
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    require_positive(1, 1, length, why.invalid);
+    length = optional(1, 1, length, 0, length_in, why.invalid);
+    condition_run(m, 1, X, H, lengths, legs, reach, &why);
+    for (size_t i = 0; i < 1; ++i) {
+        choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
+            lengths[i] : lengths[1 + i];
+    }
+    for (size_t i = 0; i < 36; ++i) {
+        divide_rows_2[i] = H[i];
+    }
+    divide_rows(3, 6, 1, places_0, choose_length_1, divide_rows_2);
+    singular_values(6, 6, divide_rows_2, sigma);
+    check(6, 1, sigma, why.overflow);
+    check(3, 1, legs, why.overflow);
+    judge(&why, 1, code);
+    deliver(sigma, 6, 1, code, sigma_out);
+    deliver(legs, 3, 1, code, legs_out);
+}
+
+static void mismatch_any(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
+    int *code)
+{
+    static const size_t places_0[] = {0, 2, 3, 5, 6, 8};
+    real q[9] = {0}, take_1[6] = {0}, gap[6] = {0};
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    check(6, 1, q_actuated, why.invalid);
+    inverse_kinematics_run(m, 1, X, q, &why);
+    take(6, 1, places_0, q, take_1);
     for (size_t i = 0; i < 6; ++i) {
-        for (size_t k = 0; k < w; ++k) {
-            for (size_t j = 0; j < 6; ++j) {
-                a[(i*stride + j)*w + k] = M[(i*6 + j)*w + k];
-            }
-            a[(i*stride + N)*w + k] = force[i*w + k];
-        }
+        gap[i] = q_actuated[i] - take_1[i];
     }
-    solve(N, stride, w, a, x, t->singular);
-    check(N, w, x, t->overflow);
-    judge(t, w, code);
-    deliver(x, 6, w, code, A);
+    check(6, 1, gap, why.overflow);
+    judge(&why, 1, code);
+    deliver(gap, 6, 1, code, gap_out);
 }
 
-/* ---- what is made of other functions ---- */
-
-int hybrid_3prps_complete_acceleration(const prepared *m, const real *X, const real *V, const real *A,
-        const real *wrench, real *completed)
+static void slope_any(const prepared *m, const real *X, real *slope_out, int *code)
 {
-    const int code = all_finite(A, 6) ? HYBRID_3PRPS_OK : HYBRID_3PRPS_INVALID;
-    (void)m;
-    (void)X;
-    (void)V;
-    (void)wrench;
-    deliver(A, 6, 1, &code, completed);
-    return code;
+    real slope[36] = {0};
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    H_run(m, 1, X, slope, &why);
+    check(36, 1, slope, why.overflow);
+    judge(&why, 1, code);
+    deliver(slope, 36, 1, code, slope_out);
 }
 
-int hybrid_3prps_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
-        const real *wrench, real *forces)
+/* The pose at which the residual vanishes, by Gauss-Newton from a start. */
+static int search_mismatch(const prepared *m, const real *q_actuated, const real *start, real *found)
 {
-    static const size_t driven[] = {0, 0, 1, 1, 2, 2};  /* leg of each drive */
-    real leg_force[9], drive[18], tau[6];
-    verdict values, *const t = &values;
-    int code = hybrid_3prps_inverse_dynamics(m, X, V, A, wrench, tau);
-    if (code != HYBRID_3PRPS_OK) {
-        refuse(9, forces);
-        return code;
-    }
-    start(1, t);
-    legs_run(m, 1, X, V, A, leg_force, drive, t);
-    for (size_t i = 0; i < 6; ++i) {
-        for (size_t e = 0; e < 3; ++e) {
-            leg_force[3*driven[i] + e] += tau[i]*drive[3*i + e];
-        }
-    }
-    check(9, 1, leg_force, t->overflow);
-    judge(t, 1, &code);
-    deliver(leg_force, 9, 1, &code, forces);
-    return code;
-}
-
-int hybrid_3prps_energy(const prepared *m, const real *X, const real *V, real *kinetic, real *potential)
-{
-    real M[36], energies[2] = {0, 0};
-    verdict values, *const t = &values;
+    enum { N = 6, NV = 6, TRIALS = 12 };
+    real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
+    real trial[7] = {0}, size = 0;
     int code;
-    start(1, t);
-    check(7, 1, X, t->invalid);
-    check(6, 1, V, t->invalid);
-    M_run(m, 1, X, M, t);
-    potential_run(m, 1, X, energies + 1, t);
-    for (size_t i = 0; i < 6; ++i) {
-        for (size_t j = 0; j < 6; ++j) {
-            energies[0] += V[i]*M[i*6 + j]*V[j]/2;
-        }
-    }
-    check(2, 1, energies, t->overflow);
-    judge(t, 1, &code);
-    deliver(energies, 1, 1, &code, kinetic);
-    deliver(energies + 1, 1, 1, &code, potential);
-    return code;
-}
-
-/* Largest residual of the driven joints at X, turns modulo 2 pi; nothing
-   where X is impossible. */
-static int mismatch(const prepared *m, const real *q_actuated, const real *X, real *gap, real *size)
-{
-    static const size_t driven[] = {0, 2, 3, 5, 6, 8};
-    real q[9];
-    int code = hybrid_3prps_inverse_kinematics(m, X, q);
-    if (code != HYBRID_3PRPS_OK) {
-        return code;
-    }
-    for (size_t i = 0; i < 6; ++i) {
-        gap[i] = q_actuated[i] - q[driven[i]];
-    }
-    *size = largest(gap, 6);
-    return code;
-}
-
-/* Step that closes the gap: the shortest with [H]^T step = gap. */
-static int close_gap(const prepared *m, const real *X, const real *gap, real *step)
-{
-    real a[BIG*(BIG + 1)], H[36];
-    int code = hybrid_3prps_H(m, X, H);
-    if (code == HYBRID_3PRPS_OK) {
-        fill_rows(6, H, gap, a);
-        least_squares(6, 6, a, step);
-    }
-    return code;
-}
-
-int hybrid_3prps_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0, real *X)
-{
-    enum { GAPS = 6 };
-    real found[7], gap[GAPS] = {0}, trial[7] = {0}, next[GAPS] = {0}, step[6] = {0};
-    real size = 0, next_size = 0;
-    int code = all_finite(q_actuated, 6) ? mismatch(m, q_actuated, X0, gap, &size)
-        : HYBRID_3PRPS_INVALID;
-    memcpy(found, X0, sizeof found);
-    for (int n = 0; n < 50 && code == HYBRID_3PRPS_OK && size > CLOSED; ++n) {
-        int better = 0;
+    memcpy(found, start, sizeof trial);
+    mismatch_any(m, found, q_actuated, gap, &code);
+    size = largest(gap, N);
+    for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
+        int better = 0, tried = OK;
         real part = 1;
-        code = close_gap(m, found, gap, step);
-        for (int halving = 0; halving < 12 && code == HYBRID_3PRPS_OK && !better; ++halving) {
+        slope_any(m, found, slope, &code);
+        if (code != OK) {
+            break;
+        }
+        for (size_t i = 0; i < N; ++i) {
+            for (size_t j = 0; j < NV; ++j) {
+                a[i*(NV + 1) + j] = slope[j*N + i];
+            }
+            a[i*(NV + 1) + NV] = gap[i];
+        }
+        least_squares(N, NV, a, step);
+        for (int halving = 0; halving < TRIALS && !better; ++halving, part /= 2) {
             moved(found, step, part, trial);
-            better = mismatch(m, q_actuated, trial, next, &next_size) == HYBRID_3PRPS_OK
-                && next_size < size;
-            part /= 2;
+            mismatch_any(m, trial, q_actuated, next, &tried);
+            better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
             break;
         }
-        memcpy(found, trial, sizeof found);
+        memcpy(found, trial, sizeof trial);
         memcpy(gap, next, sizeof gap);
-        size = next_size;
-    }
-    if (code == HYBRID_3PRPS_OK && !(size < CONVERGED)) {
-        code = HYBRID_3PRPS_NOT_CONVERGED;
-    }
-    deliver(found, 7, 1, &code, X);
-    return code;
-}
-
-/* ---- conditioning ---- */
-
-/* Turn columns p and q of a[rows][columns] until they are perpendicular; returns whether they were
-   not, to rounding. */
-static int turn_columns(size_t rows, size_t columns, size_t p, size_t q, real *a)
-{
-    real pp = 0, qq = 0, pq = 0;
-    for (size_t i = 0; i < rows; ++i) {
-        pp += a[i*columns + p]*a[i*columns + p];
-        qq += a[i*columns + q]*a[i*columns + q];
-        pq += a[i*columns + p]*a[i*columns + q];
-    }
-    if (!(magnitude(pq) > ROUNDING*root(pp)*root(qq))) {
-        return 0;
-    }
-    const real cotangent = (qq - pp)/(2*pq), size = magnitude(cotangent);
-    const real t = (cotangent < 0 ? -1 : 1)/(size + root(1 + size*size));
-    const real c = 1/root(1 + t*t), s = c*t;
-    for (size_t i = 0; i < rows; ++i) {
-        const real x = a[i*columns + p], y = a[i*columns + q];
-        a[i*columns + p] = c*x - s*y;
-        a[i*columns + q] = s*x + c*y;
-    }
-    return 1;
-}
-
-/* Singular values of a[rows][columns], rows >= columns, in descending order, by one-sided Jacobi
-   rotations; a is overwritten. */
-static void singular_values(size_t rows, size_t columns, real *a, real *sigma)
-{
-    const real size = largest(a, rows*columns);
-    for (size_t i = 0; i < rows*columns && size > 0; ++i) {
-        a[i] /= size;
-    }
-    for (int sweep = 0, turned = 1; sweep < 40 && turned; ++sweep) {
-        turned = 0;
-        for (size_t p = 0; p < columns; ++p) {
-            for (size_t q = p + 1; q < columns; ++q) {
-                turned |= turn_columns(rows, columns, p, q, a);
-            }
+        size = largest(gap, N);
+        code = tried;
+        if (TRIALS == 1 && !(largest(step, NV) > CLOSED/10)) {
+            break;
         }
     }
-    for (size_t j = 0; j < columns; ++j) {
-        real sum = 0;
-        for (size_t i = 0; i < rows; ++i) {
-            sum += a[i*columns + j]*a[i*columns + j];
-        }
-        const real value = size*root(sum);
-        size_t place = j;
-        for (; place > 0 && sigma[place - 1] < value; --place) {
-            sigma[place] = sigma[place - 1];
-        }
-        sigma[place] = value;
-    }
+    return code == OK && !(size < CONVERGED) ? NOT_CONVERGED : code;
 }
 
-/* H and Hk with moment rows divided by the length, and the margins of the legs. */
-static int matrices(const prepared *m, const real *X, real *H, real *pivots)
+
+INLINE void forward_kinematics_any(const prepared *m, const real *q_actuated, const real *X0, real
+    *X_out, int *code)
 {
-    static const size_t moments[] = {3, 4, 5};
-    real lengths[2], reach[3];
-    verdict values, *const t = &values;
-    int code;
-    start(1, t);
-    check(7, 1, X, t->invalid);
-    condition_run(m, 1, X, H, lengths, pivots, reach, t);
-    const real length = lengths[0] > R(1e-9)*lengths[1] ? lengths[0] : lengths[1];
-    for (size_t i = 0; i < 3; ++i) {
-        for (size_t j = 0; j < 6; ++j) {
-            H[moments[i]*6 + j] /= length;
-        }
-    }
-    check(36, 1, H, t->overflow);
-    check(3, 1, pivots, t->overflow);
-    judge(t, 1, &code);
-    return code;
+    real X[7] = {0};
+    verdict why;
+    start(1, &why);
+    check(6, 1, q_actuated, why.invalid);
+    check(7, 1, X0, why.invalid);
+    blame(search_mismatch(m, q_actuated, X0, X), &why);
+    check(7, 1, X, why.overflow);
+    judge(&why, 1, code);
+    deliver(X, 7, 1, code, X_out);
 }
 
-int hybrid_3prps_condition(const prepared *m, const real *X, real *sigma, real *legs)
+INLINE void dissipation_any(const real *V, real *dissipation_out, int *code)
 {
-    real H[36], a[36], found[6] = {0}, pivots[3];
-    const int code = matrices(m, X, H, pivots);
-    if (code != HYBRID_3PRPS_OK) {
-        refuse(6, sigma);
-        refuse(3, legs);
-        return code;
-    }
+    real subtract_1[6] = {0};
+    verdict why;
+    start(1, &why);
+    check(6, 1, V, why.invalid);
     for (size_t i = 0; i < 6; ++i) {
-        for (size_t j = 0; j < 6; ++j) {
-            a[i*6 + j] = H[i*6 + j];
-        }
+        subtract_1[i] = V[i] - V[i];
     }
-    singular_values(6, 6, a, found);
-    memcpy(sigma, found, sizeof found);
-    memcpy(legs, pivots, sizeof pivots);
-    return code;
+    const real *const dissipation = subtract_1;
+    check(1, 1, dissipation, why.overflow);
+    judge(&why, 1, code);
+    deliver(dissipation, 1, 1, code, dissipation_out);
 }
 
-int hybrid_3prps_rotation(const real *X, real *R)
+INLINE void momentum_any(const prepared *m, size_t w, const real *X, const real *V, real
+    *momentum_out, int *code)
 {
-    real p[4];
-    scaled(X + 3, p);
-    const int code = all_finite(X, 7) && all_finite(p, 4) ? HYBRID_3PRPS_OK : HYBRID_3PRPS_INVALID;
-    const real x = p[0], y = p[1], z = p[2], w = p[3];
-    const real xx = x*x, yy = y*y, zz = z*z, ww = w*w, n = xx + yy + zz + ww;
-    const real rows[9] = {
-        (xx + ww - (yy + zz))/n, 2*(x*y - w*z)/n, 2*(x*z + w*y)/n,
-        2*(x*y + w*z)/n, (yy + ww - (xx + zz))/n, 2*(y*z - w*x)/n,
-        2*(x*z - w*y)/n, 2*(y*z + w*x)/n, (zz + ww - (xx + yy))/n
-    };
-    deliver(rows, 9, 1, &code, R);
-    return code;
+    real X_in[7*LANES], V_in[6*LANES], M[36*LANES], momentum[6*LANES] = {0};
+    verdict why;
+    start(w, &why);
+    X = side_by_side(7, w, X, X_in, why.invalid);
+    V = side_by_side(6, w, V, V_in, why.invalid);
+    M_run(m, w, X, M, &why);
+    product(6, 6, 1, w, M, V, momentum);
+    check(6, w, momentum, why.overflow);
+    judge(&why, w, code);
+    deliver(momentum, 6, w, code, momentum_out);
 }
 
-/* X of a position and a quaternion of any length; extra coordinates zero. */
-static int with_position(const real *t, const real *p, real *X)
+INLINE void actuator_positions_any(const prepared *m, size_t w, const real *X, real *q_out, int
+    *code)
 {
-    real found[7] = {0};
-    unit(p, found + 3);
-    memcpy(found, t, 3*sizeof *t);
-    const int code = all_finite(found, 7) ? HYBRID_3PRPS_OK : HYBRID_3PRPS_INVALID;
-    deliver(found, 7, 1, &code, X);
-    return code;
+    static const size_t places_0[] = {0, 2, 3, 5, 6, 8};
+    real X_in[7*LANES], q_of_inverse_kinematics[9*LANES], q[6*LANES] = {0};
+    verdict why;
+    start(w, &why);
+    X = side_by_side(7, w, X, X_in, why.invalid);
+    inverse_kinematics_run(m, w, X, q_of_inverse_kinematics, &why);
+    take(6, 1*w, places_0, q_of_inverse_kinematics, q);
+    check(6, w, q, why.overflow);
+    judge(&why, w, code);
+    deliver(q, 6, w, code, q_out);
 }
 
-int hybrid_3prps_pose(const real *t, const real *R, real *X)
+INLINE void actuator_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
+    *qd_out, int *code)
 {
-    const real x = R[0], y = R[4], z = R[8];
-    const real s[3] = {R[7] + R[5], R[2] + R[6], R[3] + R[1]};
-    const real a[3] = {R[7] - R[5], R[2] - R[6], R[3] - R[1]};
-    /* each candidate is four times the quaternion times one of its entries; take the longest */
-    const real candidates[4][4] = {
-        {1 + x - y - z, s[2], s[1], a[0]}, {s[2], 1 - x + y - z, s[0], a[1]},
-        {s[1], s[0], 1 - x - y + z, a[2]}, {a[0], a[1], a[2], 1 + x + y + z}
-    };
-    real most = 0;
-    size_t best = 0;
-    for (size_t i = 0; i < 4; ++i) {
-        const real *const c = candidates[i], n = c[0]*c[0] + c[1]*c[1] + c[2]*c[2] + c[3]*c[3];
-        best = n > most ? i : best;
-        most = n > most ? n : most;
+    static const size_t places_0[] = {0, 2, 3, 5, 6, 8};
+    real X_in[7*LANES], V_in[6*LANES], qd_of_joint_rates[9*LANES], qd[6*LANES] = {0};
+    verdict why;
+    start(w, &why);
+    X = side_by_side(7, w, X, X_in, why.invalid);
+    V = side_by_side(6, w, V, V_in, why.invalid);
+    joint_rates_run(m, w, X, V, qd_of_joint_rates, &why);
+    take(6, 1*w, places_0, qd_of_joint_rates, qd);
+    check(6, w, qd, why.overflow);
+    judge(&why, w, code);
+    deliver(qd, 6, w, code, qd_out);
+}
+
+INLINE void actuator_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
+    const real *A, real *qdd_out, int *code)
+{
+    static const size_t places_0[] = {0, 2, 3, 5, 6, 8};
+    real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], qdd_of_joint_accelerations[9*LANES],
+        qdd[6*LANES] = {0};
+    verdict why;
+    start(w, &why);
+    X = side_by_side(7, w, X, X_in, why.invalid);
+    V = side_by_side(6, w, V, V_in, why.invalid);
+    A = side_by_side(6, w, A, A_in, why.invalid);
+    joint_accelerations_run(m, w, X, V, A, qdd_of_joint_accelerations, &why);
+    take(6, 1*w, places_0, qdd_of_joint_accelerations, qdd);
+    check(6, w, qdd, why.overflow);
+    judge(&why, w, code);
+    deliver(qdd, 6, w, code, qdd_out);
+}
+
+INLINE void power_any(const prepared *m, size_t w, const real *X, const real *V, const real *tau,
+    real *power_out, int *code)
+{
+    real X_in[7*LANES], V_in[6*LANES], tau_in[6*LANES], H[36*LANES], times_1[6*LANES] = {0},
+        power[1*LANES] = {0};
+    verdict why;
+    start(w, &why);
+    X = side_by_side(7, w, X, X_in, why.invalid);
+    V = side_by_side(6, w, V, V_in, why.invalid);
+    tau = side_by_side(6, w, tau, tau_in, why.invalid);
+    H_run(m, w, X, H, &why);
+    product(6, 6, 1, w, H, tau, times_1);
+    inner(6, w, times_1, V, power);
+    check(1, w, power, why.overflow);
+    judge(&why, w, code);
+    deliver(power, 1, w, code, power_out);
+}
+
+INLINE void rotation_any(const real *X, real *R_out, int *code)
+{
+    real R[9] = {0};
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    const real *const take_1 = X + 3;
+    rotation_of_quaternion(take_1, R);
+    check(9, 1, R, why.overflow);
+    judge(&why, 1, code);
+    deliver(R, 9, 1, code, R_out);
+}
+
+INLINE void pose_any(const real *t, const real *R, real *X_out, int *code)
+{
+    real quaternion_of_rotation_1[4] = {0}, join_2[7] = {0};
+    verdict why;
+    start(1, &why);
+    check(3, 1, t, why.invalid);
+    check(9, 1, R, why.invalid);
+    quaternion_of_rotation(R, quaternion_of_rotation_1);
+    beside(1, 3, 4, t, quaternion_of_rotation_1, join_2);
+    const real *const X = join_2;
+    check(7, 1, X, why.overflow);
+    judge(&why, 1, code);
+    deliver(X, 7, 1, code, X_out);
+}
+
+INLINE void X_dot_any(const real *X, const real *V, real *X_dot_out, int *code)
+{
+    real quaternion_rate_3[4] = {0}, X_dot[7] = {0};
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    check(6, 1, V, why.invalid);
+    const real *const take_1 = V + 3;
+    const real *const take_2 = X + 3;
+    quaternion_rate(take_2, take_1, quaternion_rate_3);
+    const real *const take_4 = V;
+    beside(1, 3, 4, take_4, quaternion_rate_3, X_dot);
+    check(7, 1, X_dot, why.overflow);
+    judge(&why, 1, code);
+    deliver(X_dot, 7, 1, code, X_dot_out);
+}
+
+INLINE void pose_from_rpy_any(const real *t, const real *rpy, real *X_out, int *code)
+{
+    real quaternion_of_rpy_1[4] = {0}, join_2[7] = {0};
+    verdict why;
+    start(1, &why);
+    check(3, 1, t, why.invalid);
+    check(3, 1, rpy, why.invalid);
+    quaternion_of_rpy(rpy, quaternion_of_rpy_1);
+    beside(1, 3, 4, t, quaternion_of_rpy_1, join_2);
+    const real *const X = join_2;
+    check(7, 1, X, why.overflow);
+    judge(&why, 1, code);
+    deliver(X, 7, 1, code, X_out);
+}
+
+INLINE void retract_any(const real *X, const real *step, real *X_moved_out, int *code)
+{
+    real turn_quaternion_5[4] = {0}, add_6[3] = {0}, X_moved[7] = {0};
+    verdict why;
+    start(1, &why);
+    check(7, 1, X, why.invalid);
+    check(6, 1, step, why.invalid);
+    const real *const take_1 = X;
+    const real *const take_2 = X + 3;
+    const real *const take_3 = step;
+    const real *const take_4 = step + 3;
+    turn_quaternion(take_2, take_4, turn_quaternion_5);
+    for (size_t i = 0; i < 3; ++i) {
+        add_6[i] = take_1[i] + take_3[i];
     }
-    if (!all_rotations(R, 1)) {
-        refuse(7, X);
-        return HYBRID_3PRPS_INVALID;
+    beside(1, 3, 4, add_6, turn_quaternion_5, X_moved);
+    check(7, 1, X_moved, why.overflow);
+    judge(&why, 1, code);
+    deliver(X_moved, 7, 1, code, X_moved_out);
+}
+
+INLINE void difference_any(const real *X0, const real *X1, real *step_out, int *code)
+{
+    real turn_between_5[3] = {0}, subtract_6[3] = {0}, step[6] = {0};
+    verdict why;
+    start(1, &why);
+    check(7, 1, X0, why.invalid);
+    check(7, 1, X1, why.invalid);
+    const real *const take_1 = X0;
+    const real *const take_2 = X0 + 3;
+    const real *const take_3 = X1;
+    const real *const take_4 = X1 + 3;
+    turn_between(take_2, take_4, turn_between_5);
+    for (size_t i = 0; i < 3; ++i) {
+        subtract_6[i] = take_3[i] - take_1[i];
     }
-    return with_position(t, candidates[best], X);
+    beside(1, 3, 3, subtract_6, turn_between_5, step);
+    check(6, 1, step, why.overflow);
+    judge(&why, 1, code);
+    deliver(step, 6, 1, code, step_out);
 }
 
-int hybrid_3prps_pose_from_rpy(const real *t, const real *rpy, real *X)
+INLINE void interpolate_any(const real *X0, const real *X1, const real *s, real *X_out, int *code)
 {
-    const real cx = cosine(rpy[0]/2), cy = cosine(rpy[1]/2), cz = cosine(rpy[2]/2);
-    const real sx = sine(rpy[0]/2), sy = sine(rpy[1]/2), sz = sine(rpy[2]/2);
-    const real p[4] = {
-        sx*cy*cz - cx*sy*sz, cx*sy*cz + sx*cy*sz, cx*cy*sz - sx*sy*cz, cx*cy*cz + sx*sy*sz
-    };
-    return with_position(t, p, X);
-}
-
-int hybrid_3prps_X_dot(const real *X, const real *V, real *X_dot)
-{
-    const real *const p = X + 3, *const w = V + 3;
-    real found[7];
-    memcpy(found, V, 3*sizeof *V);
-    found[3] = (p[3]*w[0] + w[1]*p[2] - w[2]*p[1])/2;
-    found[4] = (p[3]*w[1] + w[2]*p[0] - w[0]*p[2])/2;
-    found[5] = (p[3]*w[2] + w[0]*p[1] - w[1]*p[0])/2;
-    found[6] = -(p[0]*w[0] + p[1]*w[1] + p[2]*w[2])/2;
-    const int code = all_finite(X, 7) && all_finite(found, 7) ? HYBRID_3PRPS_OK : HYBRID_3PRPS_INVALID;
-    deliver(found, 7, 1, &code, X_dot);
-    return code;
+    real turn_between_5[3] = {0}, subtract_6[3] = {0}, join_7[6] = {0}, scale_8[6] = {0},
+        turn_quaternion_13[4] = {0}, add_14[3] = {0}, X[7] = {0};
+    verdict why;
+    start(1, &why);
+    check(7, 1, X0, why.invalid);
+    check(7, 1, X1, why.invalid);
+    check(1, 1, s, why.invalid);
+    const real *const take_1 = X0;
+    const real *const take_2 = X0 + 3;
+    const real *const take_3 = X1;
+    const real *const take_4 = X1 + 3;
+    turn_between(take_2, take_4, turn_between_5);
+    for (size_t i = 0; i < 3; ++i) {
+        subtract_6[i] = take_3[i] - take_1[i];
+    }
+    beside(1, 3, 3, subtract_6, turn_between_5, join_7);
+    for (size_t i = 0; i < 6; ++i) {
+        scale_8[i] = join_7[i]*s[i%(1)];
+    }
+    const real *const take_9 = X0;
+    const real *const take_10 = X0 + 3;
+    const real *const take_11 = scale_8;
+    const real *const take_12 = scale_8 + 3;
+    turn_quaternion(take_10, take_12, turn_quaternion_13);
+    for (size_t i = 0; i < 3; ++i) {
+        add_14[i] = take_9[i] + take_11[i];
+    }
+    beside(1, 3, 4, add_14, turn_quaternion_13, X);
+    check(7, 1, X, why.overflow);
+    judge(&why, 1, code);
+    deliver(X, 7, 1, code, X_out);
 }
 
 /* ---- one state, and batches ---- */
@@ -4769,7 +5123,7 @@ size_t hybrid_3prps_M_batch(const hybrid_3prps_model *model, size_t n, const hyb
         int codes[LANES];
         M_any(model, LANES, X + 7*i, M + 36*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
-            if (codes[k] != HYBRID_3PRPS_OK) {
+            if (codes[k] != OK) {
                 codes[k] = hybrid_3prps_M(model, X + 7*(i + k), M + 36*(i + k));
             }
         }
@@ -4798,7 +5152,7 @@ size_t hybrid_3prps_Z_batch(const hybrid_3prps_model *model, size_t n, const hyb
         int codes[LANES];
         Z_any(model, LANES, X + 7*i, V + 6*i, Z + 6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
-            if (codes[k] != HYBRID_3PRPS_OK) {
+            if (codes[k] != OK) {
                 codes[k] = hybrid_3prps_Z(model, X + 7*(i + k), V + 6*(i + k), Z + 6*(i + k));
             }
         }
@@ -4827,7 +5181,7 @@ size_t hybrid_3prps_H_batch(const hybrid_3prps_model *model, size_t n, const hyb
         int codes[LANES];
         H_any(model, LANES, X + 7*i, H + 36*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
-            if (codes[k] != HYBRID_3PRPS_OK) {
+            if (codes[k] != OK) {
                 codes[k] = hybrid_3prps_H(model, X + 7*(i + k), H + 36*(i + k));
             }
         }
@@ -4835,37 +5189,6 @@ size_t hybrid_3prps_H_batch(const hybrid_3prps_model *model, size_t n, const hyb
     }
     for (; i < n; ++i) {
         const int code = hybrid_3prps_H(model, X + 7*i, H + 36*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int hybrid_3prps_dynamics(const hybrid_3prps_model *model, const hybrid_3prps_real *X, const
-    hybrid_3prps_real *V, hybrid_3prps_real *M, hybrid_3prps_real *Z, hybrid_3prps_real *H)
-{
-    int code;
-    dynamics_any(model, 1, X, V, M, Z, H, &code);
-    return code;
-}
-
-size_t hybrid_3prps_dynamics_batch(const hybrid_3prps_model *model, size_t n, const
-    hybrid_3prps_real *X, const hybrid_3prps_real *V, hybrid_3prps_real *M, hybrid_3prps_real *Z,
-    hybrid_3prps_real *H, int *status)
-{
-    size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        dynamics_any(model, LANES, X + 7*i, V + 6*i, M + 36*i, Z + 6*i, H + 36*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
-            if (codes[k] != HYBRID_3PRPS_OK) {
-                codes[k] = hybrid_3prps_dynamics(model, X + 7*(i + k), V + 6*(i + k), M + 36*(i + k), Z + 6*(i +
-                    k), H + 36*(i + k));
-            }
-        }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hybrid_3prps_dynamics(model, X + 7*i, V + 6*i, M + 36*i, Z + 6*i, H + 36*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -4887,7 +5210,7 @@ size_t hybrid_3prps_inverse_kinematics_batch(const hybrid_3prps_model *model, si
         int codes[LANES];
         inverse_kinematics_any(model, LANES, X + 7*i, q + 9*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
-            if (codes[k] != HYBRID_3PRPS_OK) {
+            if (codes[k] != OK) {
                 codes[k] = hybrid_3prps_inverse_kinematics(model, X + 7*(i + k), q + 9*(i + k));
             }
         }
@@ -4916,7 +5239,7 @@ size_t hybrid_3prps_joint_rates_batch(const hybrid_3prps_model *model, size_t n,
         int codes[LANES];
         joint_rates_any(model, LANES, X + 7*i, V + 6*i, rates + 9*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
-            if (codes[k] != HYBRID_3PRPS_OK) {
+            if (codes[k] != OK) {
                 codes[k] = hybrid_3prps_joint_rates(model, X + 7*(i + k), V + 6*(i + k), rates + 9*(i + k));
             }
         }
@@ -4946,7 +5269,7 @@ size_t hybrid_3prps_joint_accelerations_batch(const hybrid_3prps_model *model, s
         int codes[LANES];
         joint_accelerations_any(model, LANES, X + 7*i, V + 6*i, A + 6*i, accelerations + 9*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
-            if (codes[k] != HYBRID_3PRPS_OK) {
+            if (codes[k] != OK) {
                 codes[k] = hybrid_3prps_joint_accelerations(model, X + 7*(i + k), V + 6*(i + k), A + 6*(i + k),
                     accelerations + 9*(i + k));
             }
@@ -4956,6 +5279,37 @@ size_t hybrid_3prps_joint_accelerations_batch(const hybrid_3prps_model *model, s
     for (; i < n; ++i) {
         const int code = hybrid_3prps_joint_accelerations(model, X + 7*i, V + 6*i, A + 6*i, accelerations
             + 9*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int hybrid_3prps_dynamics(const hybrid_3prps_model *model, const hybrid_3prps_real *X, const
+    hybrid_3prps_real *V, hybrid_3prps_real *M, hybrid_3prps_real *Z, hybrid_3prps_real *H)
+{
+    int code;
+    dynamics_any(model, 1, X, V, M, Z, H, &code);
+    return code;
+}
+
+size_t hybrid_3prps_dynamics_batch(const hybrid_3prps_model *model, size_t n, const
+    hybrid_3prps_real *X, const hybrid_3prps_real *V, hybrid_3prps_real *M, hybrid_3prps_real *Z,
+    hybrid_3prps_real *H, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        dynamics_any(model, LANES, X + 7*i, V + 6*i, M + 36*i, Z + 6*i, H + 36*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = hybrid_3prps_dynamics(model, X + 7*(i + k), V + 6*(i + k), M + 36*(i + k), Z + 6*(i +
+                    k), H + 36*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = hybrid_3prps_dynamics(model, X + 7*i, V + 6*i, M + 36*i, Z + 6*i, H + 36*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -4980,7 +5334,7 @@ size_t hybrid_3prps_inverse_dynamics_batch(const hybrid_3prps_model *model, size
         inverse_dynamics_any(model, LANES, X + 7*i, V + 6*i, A + 6*i, wrench ? wrench + 6*i : NULL, tau +
             6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
-            if (codes[k] != HYBRID_3PRPS_OK) {
+            if (codes[k] != OK) {
                 codes[k] = hybrid_3prps_inverse_dynamics(model, X + 7*(i + k), V + 6*(i + k), A + 6*(i + k),
                     wrench ? wrench + 6*(i + k) : NULL, tau + 6*(i + k));
             }
@@ -5014,7 +5368,7 @@ size_t hybrid_3prps_forward_dynamics_batch(const hybrid_3prps_model *model, size
         forward_dynamics_any(model, LANES, X + 7*i, V + 6*i, tau + 6*i, wrench ? wrench + 6*i : NULL, A +
             6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
-            if (codes[k] != HYBRID_3PRPS_OK) {
+            if (codes[k] != OK) {
                 codes[k] = hybrid_3prps_forward_dynamics(model, X + 7*(i + k), V + 6*(i + k), tau + 6*(i + k),
                     wrench ? wrench + 6*(i + k) : NULL, A + 6*(i + k));
             }
@@ -5029,12 +5383,25 @@ size_t hybrid_3prps_forward_dynamics_batch(const hybrid_3prps_model *model, size
     return failed;
 }
 
+int hybrid_3prps_complete_acceleration(const hybrid_3prps_model *model, const hybrid_3prps_real
+    *X, const hybrid_3prps_real *V, const hybrid_3prps_real *A, const hybrid_3prps_real *wrench,
+    hybrid_3prps_real *completed)
+{
+    int code;
+    (void)model;
+    (void)X;
+    (void)V;
+    (void)wrench;
+    complete_acceleration_any(A, completed, &code);
+    return code;
+}
+
 size_t hybrid_3prps_complete_acceleration_batch(const hybrid_3prps_model *model, size_t n, const
     hybrid_3prps_real *X, const hybrid_3prps_real *V, const hybrid_3prps_real *A, const
     hybrid_3prps_real *wrench, hybrid_3prps_real *completed, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
+    size_t failed = 0, i = 0;
+    for (; i < n; ++i) {
         const int code = hybrid_3prps_complete_acceleration(model, X + 7*i, V + 6*i, A + 6*i, wrench ?
             wrench + 6*i : NULL, completed + 6*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -5042,12 +5409,21 @@ size_t hybrid_3prps_complete_acceleration_batch(const hybrid_3prps_model *model,
     return failed;
 }
 
+int hybrid_3prps_leg_reactions(const hybrid_3prps_model *model, const hybrid_3prps_real *X, const
+    hybrid_3prps_real *V, const hybrid_3prps_real *A, const hybrid_3prps_real *wrench,
+    hybrid_3prps_real *forces)
+{
+    int code;
+    leg_reactions_any(model, X, V, A, wrench, forces, &code);
+    return code;
+}
+
 size_t hybrid_3prps_leg_reactions_batch(const hybrid_3prps_model *model, size_t n, const
     hybrid_3prps_real *X, const hybrid_3prps_real *V, const hybrid_3prps_real *A, const
     hybrid_3prps_real *wrench, hybrid_3prps_real *forces, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
+    size_t failed = 0, i = 0;
+    for (; i < n; ++i) {
         const int code = hybrid_3prps_leg_reactions(model, X + 7*i, V + 6*i, A + 6*i, wrench ? wrench +
             6*i : NULL, forces + 9*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -5055,79 +5431,362 @@ size_t hybrid_3prps_leg_reactions_batch(const hybrid_3prps_model *model, size_t 
     return failed;
 }
 
+int hybrid_3prps_energy(const hybrid_3prps_model *model, const hybrid_3prps_real *X, const
+    hybrid_3prps_real *V, hybrid_3prps_real *kinetic, hybrid_3prps_real *potential)
+{
+    int code;
+    energy_any(model, X, V, kinetic, potential, &code);
+    return code;
+}
+
 size_t hybrid_3prps_energy_batch(const hybrid_3prps_model *model, size_t n, const
     hybrid_3prps_real *X, const hybrid_3prps_real *V, hybrid_3prps_real *kinetic,
     hybrid_3prps_real *potential, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
+    size_t failed = 0, i = 0;
+    for (; i < n; ++i) {
         const int code = hybrid_3prps_energy(model, X + 7*i, V + 6*i, kinetic + 1*i, potential + 1*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-size_t hybrid_3prps_forward_kinematics_batch(const hybrid_3prps_model *model, size_t n, const
-    hybrid_3prps_real *q_actuated, const hybrid_3prps_real *X0, hybrid_3prps_real *X, int *status)
+int hybrid_3prps_condition(const hybrid_3prps_model *model, const hybrid_3prps_real *X,
+    hybrid_3prps_real *sigma, hybrid_3prps_real *legs)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = hybrid_3prps_forward_kinematics(model, q_actuated + 6*i, X0 + 7*i, X + 7*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    int code;
+    condition_any(model, X, NULL, sigma, legs, &code);
+    return code;
 }
 
 size_t hybrid_3prps_condition_batch(const hybrid_3prps_model *model, size_t n, const
     hybrid_3prps_real *X, hybrid_3prps_real *sigma, hybrid_3prps_real *legs, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
+    size_t failed = 0, i = 0;
+    for (; i < n; ++i) {
         const int code = hybrid_3prps_condition(model, X + 7*i, sigma + 6*i, legs + 3*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
+int hybrid_3prps_forward_kinematics(const hybrid_3prps_model *model, const hybrid_3prps_real
+    *q_actuated, const hybrid_3prps_real *X0, hybrid_3prps_real *X)
+{
+    int code;
+    forward_kinematics_any(model, q_actuated, X0, X, &code);
+    return code;
+}
+
+size_t hybrid_3prps_forward_kinematics_batch(const hybrid_3prps_model *model, size_t n, const
+    hybrid_3prps_real *q_actuated, const hybrid_3prps_real *X0, hybrid_3prps_real *X, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; i < n; ++i) {
+        const int code = hybrid_3prps_forward_kinematics(model, q_actuated + 6*i, X0 + 7*i, X + 7*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int hybrid_3prps_dissipation(const hybrid_3prps_model *model, const hybrid_3prps_real *X, const
+    hybrid_3prps_real *V, hybrid_3prps_real *dissipation)
+{
+    int code;
+    (void)model;
+    (void)X;
+    dissipation_any(V, dissipation, &code);
+    return code;
+}
+
+size_t hybrid_3prps_dissipation_batch(const hybrid_3prps_model *model, size_t n, const
+    hybrid_3prps_real *X, const hybrid_3prps_real *V, hybrid_3prps_real *dissipation, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; i < n; ++i) {
+        const int code = hybrid_3prps_dissipation(model, X + 7*i, V + 6*i, dissipation + 1*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int hybrid_3prps_momentum(const hybrid_3prps_model *model, const hybrid_3prps_real *X, const
+    hybrid_3prps_real *V, hybrid_3prps_real *momentum)
+{
+    int code;
+    momentum_any(model, 1, X, V, momentum, &code);
+    return code;
+}
+
+size_t hybrid_3prps_momentum_batch(const hybrid_3prps_model *model, size_t n, const
+    hybrid_3prps_real *X, const hybrid_3prps_real *V, hybrid_3prps_real *momentum, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        momentum_any(model, LANES, X + 7*i, V + 6*i, momentum + 6*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = hybrid_3prps_momentum(model, X + 7*(i + k), V + 6*(i + k), momentum + 6*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = hybrid_3prps_momentum(model, X + 7*i, V + 6*i, momentum + 6*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int hybrid_3prps_actuator_positions(const hybrid_3prps_model *model, const hybrid_3prps_real *X,
+    hybrid_3prps_real *q)
+{
+    int code;
+    actuator_positions_any(model, 1, X, q, &code);
+    return code;
+}
+
+size_t hybrid_3prps_actuator_positions_batch(const hybrid_3prps_model *model, size_t n, const
+    hybrid_3prps_real *X, hybrid_3prps_real *q, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        actuator_positions_any(model, LANES, X + 7*i, q + 6*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = hybrid_3prps_actuator_positions(model, X + 7*(i + k), q + 6*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = hybrid_3prps_actuator_positions(model, X + 7*i, q + 6*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int hybrid_3prps_actuator_rates(const hybrid_3prps_model *model, const hybrid_3prps_real *X, const
+    hybrid_3prps_real *V, hybrid_3prps_real *rates)
+{
+    int code;
+    actuator_rates_any(model, 1, X, V, rates, &code);
+    return code;
+}
+
+size_t hybrid_3prps_actuator_rates_batch(const hybrid_3prps_model *model, size_t n, const
+    hybrid_3prps_real *X, const hybrid_3prps_real *V, hybrid_3prps_real *rates, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        actuator_rates_any(model, LANES, X + 7*i, V + 6*i, rates + 6*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = hybrid_3prps_actuator_rates(model, X + 7*(i + k), V + 6*(i + k), rates + 6*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = hybrid_3prps_actuator_rates(model, X + 7*i, V + 6*i, rates + 6*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int hybrid_3prps_actuator_accelerations(const hybrid_3prps_model *model, const hybrid_3prps_real
+    *X, const hybrid_3prps_real *V, const hybrid_3prps_real *A, hybrid_3prps_real *accelerations)
+{
+    int code;
+    actuator_accelerations_any(model, 1, X, V, A, accelerations, &code);
+    return code;
+}
+
+size_t hybrid_3prps_actuator_accelerations_batch(const hybrid_3prps_model *model, size_t n, const
+    hybrid_3prps_real *X, const hybrid_3prps_real *V, const hybrid_3prps_real *A,
+    hybrid_3prps_real *accelerations, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        actuator_accelerations_any(model, LANES, X + 7*i, V + 6*i, A + 6*i, accelerations + 6*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = hybrid_3prps_actuator_accelerations(model, X + 7*(i + k), V + 6*(i + k), A + 6*(i + k),
+                    accelerations + 6*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = hybrid_3prps_actuator_accelerations(model, X + 7*i, V + 6*i, A + 6*i,
+            accelerations + 6*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int hybrid_3prps_power(const hybrid_3prps_model *model, const hybrid_3prps_real *X, const
+    hybrid_3prps_real *V, const hybrid_3prps_real *tau, hybrid_3prps_real *power)
+{
+    int code;
+    power_any(model, 1, X, V, tau, power, &code);
+    return code;
+}
+
+size_t hybrid_3prps_power_batch(const hybrid_3prps_model *model, size_t n, const hybrid_3prps_real
+    *X, const hybrid_3prps_real *V, const hybrid_3prps_real *tau, hybrid_3prps_real *power, int
+    *status)
+{
+    size_t failed = 0, i = 0;
+    for (; i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        power_any(model, LANES, X + 7*i, V + 6*i, tau + 6*i, power + 1*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = hybrid_3prps_power(model, X + 7*(i + k), V + 6*(i + k), tau + 6*(i + k), power + 1*(i +
+                    k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = hybrid_3prps_power(model, X + 7*i, V + 6*i, tau + 6*i, power + 1*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int hybrid_3prps_rotation(const hybrid_3prps_real *X, hybrid_3prps_real *R)
+{
+    int code;
+    rotation_any(X, R, &code);
+    return code;
+}
+
 size_t hybrid_3prps_rotation_batch(size_t n, const hybrid_3prps_real *X, hybrid_3prps_real *R, int
     *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
+    size_t failed = 0, i = 0;
+    for (; i < n; ++i) {
         const int code = hybrid_3prps_rotation(X + 7*i, R + 9*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
+int hybrid_3prps_pose(const hybrid_3prps_real *t, const hybrid_3prps_real *R, hybrid_3prps_real
+    *X)
+{
+    int code;
+    pose_any(t, R, X, &code);
+    return code;
+}
+
 size_t hybrid_3prps_pose_batch(size_t n, const hybrid_3prps_real *t, const hybrid_3prps_real *R,
     hybrid_3prps_real *X, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
+    size_t failed = 0, i = 0;
+    for (; i < n; ++i) {
         const int code = hybrid_3prps_pose(t + 3*i, R + 9*i, X + 7*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
+int hybrid_3prps_X_dot(const hybrid_3prps_real *X, const hybrid_3prps_real *V, hybrid_3prps_real
+    *X_dot)
+{
+    int code;
+    X_dot_any(X, V, X_dot, &code);
+    return code;
+}
+
+size_t hybrid_3prps_X_dot_batch(size_t n, const hybrid_3prps_real *X, const hybrid_3prps_real *V,
+    hybrid_3prps_real *X_dot, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; i < n; ++i) {
+        const int code = hybrid_3prps_X_dot(X + 7*i, V + 6*i, X_dot + 7*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int hybrid_3prps_pose_from_rpy(const hybrid_3prps_real *t, const hybrid_3prps_real *rpy,
+    hybrid_3prps_real *X)
+{
+    int code;
+    pose_from_rpy_any(t, rpy, X, &code);
+    return code;
+}
+
 size_t hybrid_3prps_pose_from_rpy_batch(size_t n, const hybrid_3prps_real *t, const
     hybrid_3prps_real *rpy, hybrid_3prps_real *X, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
+    size_t failed = 0, i = 0;
+    for (; i < n; ++i) {
         const int code = hybrid_3prps_pose_from_rpy(t + 3*i, rpy + 3*i, X + 7*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-size_t hybrid_3prps_X_dot_batch(size_t n, const hybrid_3prps_real *X, const hybrid_3prps_real *V,
-    hybrid_3prps_real *X_dot, int *status)
+int hybrid_3prps_retract(const hybrid_3prps_real *X, const hybrid_3prps_real *step,
+    hybrid_3prps_real *X_moved)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = hybrid_3prps_X_dot(X + 7*i, V + 6*i, X_dot + 7*i);
+    int code;
+    retract_any(X, step, X_moved, &code);
+    return code;
+}
+
+size_t hybrid_3prps_retract_batch(size_t n, const hybrid_3prps_real *X, const hybrid_3prps_real
+    *step, hybrid_3prps_real *X_moved, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; i < n; ++i) {
+        const int code = hybrid_3prps_retract(X + 7*i, step + 6*i, X_moved + 7*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int hybrid_3prps_difference(const hybrid_3prps_real *X0, const hybrid_3prps_real *X1,
+    hybrid_3prps_real *step)
+{
+    int code;
+    difference_any(X0, X1, step, &code);
+    return code;
+}
+
+size_t hybrid_3prps_difference_batch(size_t n, const hybrid_3prps_real *X0, const
+    hybrid_3prps_real *X1, hybrid_3prps_real *step, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; i < n; ++i) {
+        const int code = hybrid_3prps_difference(X0 + 7*i, X1 + 7*i, step + 6*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int hybrid_3prps_interpolate(const hybrid_3prps_real *X0, const hybrid_3prps_real *X1, const
+    hybrid_3prps_real *s, hybrid_3prps_real *X)
+{
+    int code;
+    interpolate_any(X0, X1, s, X, &code);
+    return code;
+}
+
+size_t hybrid_3prps_interpolate_batch(size_t n, const hybrid_3prps_real *X0, const
+    hybrid_3prps_real *X1, const hybrid_3prps_real *s, hybrid_3prps_real *X, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; i < n; ++i) {
+        const int code = hybrid_3prps_interpolate(X0 + 7*i, X1 + 7*i, s + 1*i, X + 7*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;

@@ -118,6 +118,9 @@ typedef struct {
 extern const hybrid_3prps_params hybrid_3prps_default_params;
 extern const hybrid_3prps_real hybrid_3prps_HOME_X[HYBRID_3PRPS_NQ];
 extern const hybrid_3prps_real hybrid_3prps_HOME_Q[HYBRID_3PRPS_NJ];
+/* Places of the actuated joints in q, and their names, in the order of tau. */
+extern const size_t hybrid_3prps_ACTUATED[HYBRID_3PRPS_NU];
+extern const char *const hybrid_3prps_ACTUATOR_NAMES[HYBRID_3PRPS_NU];
 
 /* Prepare a model.  HYBRID_3PRPS_INVALID, and the model is all NaN: a parameter is not finite or beyond
    1e+12; a mass is negative; an inertia is not symmetric, or has a negative principal moment,
@@ -146,16 +149,8 @@ int hybrid_3prps_H(const hybrid_3prps_model *model, const hybrid_3prps_real *X, 
 size_t hybrid_3prps_H_batch(const hybrid_3prps_model *model, size_t n, const hybrid_3prps_real *X,
     hybrid_3prps_real *H, int *status);
 
-/* M, Z and H together, sharing the work. 576 mul, 483 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V
-   (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
-int hybrid_3prps_dynamics(const hybrid_3prps_model *model, const hybrid_3prps_real *X, const
-    hybrid_3prps_real *V, hybrid_3prps_real *M, hybrid_3prps_real *Z, hybrid_3prps_real *H);
-size_t hybrid_3prps_dynamics_batch(const hybrid_3prps_model *model, size_t n, const
-    hybrid_3prps_real *X, const hybrid_3prps_real *V, hybrid_3prps_real *M, hybrid_3prps_real *Z,
-    hybrid_3prps_real *H, int *status);
-
-/* Displacements q of all joints, on the assembly branch of home. 69 mul, 57 add, 3 div, 3 sqrt, 3
-   trig. In: X (NQ). Out: q (NJ). */
+/* Displacements q of all joints. They are those of the assembly branch of home. 69 mul, 57 add, 3
+   div, 3 sqrt, 3 trig. In: X (NQ). Out: q (NJ). */
 int hybrid_3prps_inverse_kinematics(const hybrid_3prps_model *model, const hybrid_3prps_real *X,
     hybrid_3prps_real *q);
 size_t hybrid_3prps_inverse_kinematics_batch(const hybrid_3prps_model *model, size_t n, const
@@ -175,6 +170,14 @@ int hybrid_3prps_joint_accelerations(const hybrid_3prps_model *model, const hybr
 size_t hybrid_3prps_joint_accelerations_batch(const hybrid_3prps_model *model, size_t n, const
     hybrid_3prps_real *X, const hybrid_3prps_real *V, const hybrid_3prps_real *A,
     hybrid_3prps_real *accelerations, int *status);
+
+/* M, Z and H together, sharing the work. 576 mul, 483 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V
+   (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
+int hybrid_3prps_dynamics(const hybrid_3prps_model *model, const hybrid_3prps_real *X, const
+    hybrid_3prps_real *V, hybrid_3prps_real *M, hybrid_3prps_real *Z, hybrid_3prps_real *H);
+size_t hybrid_3prps_dynamics_batch(const hybrid_3prps_model *model, size_t n, const
+    hybrid_3prps_real *X, const hybrid_3prps_real *V, hybrid_3prps_real *M, hybrid_3prps_real *Z,
+    hybrid_3prps_real *H, int *status);
 
 /* Actuator forces tau for the acceleration A, by Eq. 3. 432 mul, 339 add, 3 div, 3 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
@@ -196,8 +199,9 @@ size_t hybrid_3prps_forward_dynamics_batch(const hybrid_3prps_model *model, size
     hybrid_3prps_real *X, const hybrid_3prps_real *V, const hybrid_3prps_real *tau, const
     hybrid_3prps_real *wrench, hybrid_3prps_real *A, int *status);
 
-/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
-   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
+/* A with the entries of passive extra coordinates that the others allow. It is A: there are no
+   passive extra coordinates, whose accelerations would follow. In: X (NQ), V (NV), A (NV), wrench
+   (NW, or NULL). Out: completed (NV). */
 int hybrid_3prps_complete_acceleration(const hybrid_3prps_model *model, const hybrid_3prps_real
     *X, const hybrid_3prps_real *V, const hybrid_3prps_real *A, const hybrid_3prps_real *wrench,
     hybrid_3prps_real *completed);
@@ -205,9 +209,9 @@ size_t hybrid_3prps_complete_acceleration_batch(const hybrid_3prps_model *model,
     hybrid_3prps_real *X, const hybrid_3prps_real *V, const hybrid_3prps_real *A, const
     hybrid_3prps_real *wrench, hybrid_3prps_real *completed, int *status);
 
-/* Force of each leg on the platform at its platform joint, base axes. 294 mul, 222 add, 3 div, 3
-   sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
-   forces (3 x 3). */
+/* Force of each leg on the platform at its platform joint, base axes. The actuators give the
+   forces of inverse_dynamics. 294 mul, 222 add, 3 div, 3 sqrt, 0 trig; inverse dynamics apart.
+   In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (3 x 3). */
 int hybrid_3prps_leg_reactions(const hybrid_3prps_model *model, const hybrid_3prps_real *X, const
     hybrid_3prps_real *V, const hybrid_3prps_real *A, const hybrid_3prps_real *wrench,
     hybrid_3prps_real *forces);
@@ -215,41 +219,95 @@ size_t hybrid_3prps_leg_reactions_batch(const hybrid_3prps_model *model, size_t 
     hybrid_3prps_real *X, const hybrid_3prps_real *V, const hybrid_3prps_real *A, const
     hybrid_3prps_real *wrench, hybrid_3prps_real *forces, int *status);
 
-/* Kinetic and potential energy; the latter is zero at the base origin. In: X (NQ), V (NV). Out:
-   kinetic (1), potential (1). */
+/* Kinetic and potential energy [J]; the latter is zero at the base origin. In: X (NQ), V (NV).
+   Out: kinetic (1), potential (1). */
 int hybrid_3prps_energy(const hybrid_3prps_model *model, const hybrid_3prps_real *X, const
     hybrid_3prps_real *V, hybrid_3prps_real *kinetic, hybrid_3prps_real *potential);
 size_t hybrid_3prps_energy_batch(const hybrid_3prps_model *model, size_t n, const
     hybrid_3prps_real *X, const hybrid_3prps_real *V, hybrid_3prps_real *kinetic,
     hybrid_3prps_real *potential, int *status);
 
-/* X at which the driven joints stand at q_actuated, by Gauss-Newton from X0; extra coordinates
-   that the drives do not determine stay. In: q_actuated (NU), X0 (NQ). Out: X (NQ). */
-int hybrid_3prps_forward_kinematics(const hybrid_3prps_model *model, const hybrid_3prps_real
-    *q_actuated, const hybrid_3prps_real *X0, hybrid_3prps_real *X);
-size_t hybrid_3prps_forward_kinematics_batch(const hybrid_3prps_model *model, size_t n, const
-    hybrid_3prps_real *q_actuated, const hybrid_3prps_real *X0, hybrid_3prps_real *X, int *status);
-
-/* Singular values of H in descending order, moment rows divided by the rms distance of the
-   platform points from their centroid; for every leg the least tested pivot as a fraction of its
-   scale. 130 mul, 99 add, 3 div, 7 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
-   sigma (6), legs (3). */
+/* How far a pose is from singularities: singular values of H, rows of moments divided by a
+   length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
+   distance of the platform points from their centroid, or where they coincide the rms size of the
+   legs. 130 mul, 99 add, 3 div, 7 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
+   (6), legs (3). */
 int hybrid_3prps_condition(const hybrid_3prps_model *model, const hybrid_3prps_real *X,
     hybrid_3prps_real *sigma, hybrid_3prps_real *legs);
 size_t hybrid_3prps_condition_batch(const hybrid_3prps_model *model, size_t n, const
     hybrid_3prps_real *X, hybrid_3prps_real *sigma, hybrid_3prps_real *legs, int *status);
 
-/* base_R_platform; a quaternion need not be normalised. In: X (NQ). Out: R (3 x 3). */
+/* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
+   that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
+   X0 (NQ). Out: X (NQ). */
+int hybrid_3prps_forward_kinematics(const hybrid_3prps_model *model, const hybrid_3prps_real
+    *q_actuated, const hybrid_3prps_real *X0, hybrid_3prps_real *X);
+size_t hybrid_3prps_forward_kinematics_batch(const hybrid_3prps_model *model, size_t n, const
+    hybrid_3prps_real *q_actuated, const hybrid_3prps_real *X0, hybrid_3prps_real *X, int *status);
+
+/* Power that friction takes, not negative; the rate of energy is power less this. In: X (NQ), V
+   (NV). Out: dissipation (1). */
+int hybrid_3prps_dissipation(const hybrid_3prps_model *model, const hybrid_3prps_real *X, const
+    hybrid_3prps_real *V, hybrid_3prps_real *dissipation);
+size_t hybrid_3prps_dissipation_batch(const hybrid_3prps_model *model, size_t n, const
+    hybrid_3prps_real *X, const hybrid_3prps_real *V, hybrid_3prps_real *dissipation, int *status);
+
+/* Generalised momentum M V. 291 mul, 273 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+   momentum (NV). */
+int hybrid_3prps_momentum(const hybrid_3prps_model *model, const hybrid_3prps_real *X, const
+    hybrid_3prps_real *V, hybrid_3prps_real *momentum);
+size_t hybrid_3prps_momentum_batch(const hybrid_3prps_model *model, size_t n, const
+    hybrid_3prps_real *X, const hybrid_3prps_real *V, hybrid_3prps_real *momentum, int *status);
+
+/* Displacements of the actuated joints, in the order of tau. 69 mul, 57 add, 3 div, 3 sqrt, 3
+   trig. In: X (NQ). Out: q (NU). */
+int hybrid_3prps_actuator_positions(const hybrid_3prps_model *model, const hybrid_3prps_real *X,
+    hybrid_3prps_real *q);
+size_t hybrid_3prps_actuator_positions_batch(const hybrid_3prps_model *model, size_t n, const
+    hybrid_3prps_real *X, hybrid_3prps_real *q, int *status);
+
+/* Rates of the actuated joints, in the order of tau. 144 mul, 105 add, 3 div, 3 sqrt, 0 trig. In:
+   X (NQ), V (NV). Out: rates (NU). */
+int hybrid_3prps_actuator_rates(const hybrid_3prps_model *model, const hybrid_3prps_real *X, const
+    hybrid_3prps_real *V, hybrid_3prps_real *rates);
+size_t hybrid_3prps_actuator_rates_batch(const hybrid_3prps_model *model, size_t n, const
+    hybrid_3prps_real *X, const hybrid_3prps_real *V, hybrid_3prps_real *rates, int *status);
+
+/* Accelerations of the actuated joints, in the order of tau. 213 mul, 159 add, 3 div, 3 sqrt, 0
+   trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
+int hybrid_3prps_actuator_accelerations(const hybrid_3prps_model *model, const hybrid_3prps_real
+    *X, const hybrid_3prps_real *V, const hybrid_3prps_real *A, hybrid_3prps_real *accelerations);
+size_t hybrid_3prps_actuator_accelerations_batch(const hybrid_3prps_model *model, size_t n, const
+    hybrid_3prps_real *X, const hybrid_3prps_real *V, const hybrid_3prps_real *A,
+    hybrid_3prps_real *accelerations, int *status);
+
+/* Power that actuators give to the mechanism: tau times their rates. In: X (NQ), V (NV), tau
+   (NU). Out: power (1). */
+int hybrid_3prps_power(const hybrid_3prps_model *model, const hybrid_3prps_real *X, const
+    hybrid_3prps_real *V, const hybrid_3prps_real *tau, hybrid_3prps_real *power);
+size_t hybrid_3prps_power_batch(const hybrid_3prps_model *model, size_t n, const hybrid_3prps_real
+    *X, const hybrid_3prps_real *V, const hybrid_3prps_real *tau, hybrid_3prps_real *power, int
+    *status);
+
+/* base_R_platform at X; a quaternion need not be normalised. Impossible where the quaternion is
+   zero or its squared length overflows. In: X (NQ). Out: R (3 x 3). */
 int hybrid_3prps_rotation(const hybrid_3prps_real *X, hybrid_3prps_real *R);
 size_t hybrid_3prps_rotation_batch(size_t n, const hybrid_3prps_real *X, hybrid_3prps_real *R, int
     *status);
 
-/* X of the platform at origin t with rotation matrix R. INVALID where R has not orthonormal rows,
-   to 1e-06 (float: 1e-5), and determinant +1. In: t (3), R (3 x 3). Out: X (NQ). */
+/* X of the platform at origin t with rotation matrix R; extra coordinates zero. INVALID where R
+   has not orthonormal rows, to 1e-06 (float: 1e-5), and determinant +1. In: t (3), R (3 x 3).
+   Out: X (NQ). */
 int hybrid_3prps_pose(const hybrid_3prps_real *t, const hybrid_3prps_real *R, hybrid_3prps_real
     *X);
 size_t hybrid_3prps_pose_batch(size_t n, const hybrid_3prps_real *t, const hybrid_3prps_real *R,
     hybrid_3prps_real *X, int *status);
+
+/* Rate of X at the velocity V. In: X (NQ), V (NV). Out: X_dot (NQ). */
+int hybrid_3prps_X_dot(const hybrid_3prps_real *X, const hybrid_3prps_real *V, hybrid_3prps_real
+    *X_dot);
+size_t hybrid_3prps_X_dot_batch(size_t n, const hybrid_3prps_real *X, const hybrid_3prps_real *V,
+    hybrid_3prps_real *X_dot, int *status);
 
 /* X from roll, pitch, yaw about the fixed axes x, y, z, in that order. In: t (3), rpy (3). Out: X
    (NQ). */
@@ -258,11 +316,26 @@ int hybrid_3prps_pose_from_rpy(const hybrid_3prps_real *t, const hybrid_3prps_re
 size_t hybrid_3prps_pose_from_rpy_batch(size_t n, const hybrid_3prps_real *t, const
     hybrid_3prps_real *rpy, hybrid_3prps_real *X, int *status);
 
-/* Rate of X at the velocity V. In: X (NQ), V (NV). Out: X_dot (NQ). */
-int hybrid_3prps_X_dot(const hybrid_3prps_real *X, const hybrid_3prps_real *V, hybrid_3prps_real
-    *X_dot);
-size_t hybrid_3prps_X_dot_batch(size_t n, const hybrid_3prps_real *X, const hybrid_3prps_real *V,
-    hybrid_3prps_real *X_dot, int *status);
+/* X moved by a displacement: (t + d, exp([phi]) R, y + dy) of step = (d, phi, dy). In: X (NQ),
+   step (NV). Out: X_moved (NQ). */
+int hybrid_3prps_retract(const hybrid_3prps_real *X, const hybrid_3prps_real *step,
+    hybrid_3prps_real *X_moved);
+size_t hybrid_3prps_retract_batch(size_t n, const hybrid_3prps_real *X, const hybrid_3prps_real
+    *step, hybrid_3prps_real *X_moved, int *status);
+
+/* The displacement from X0 to X1, the inverse of retract; rotations the shorter way. In: X0 (NQ),
+   X1 (NQ). Out: step (NV). */
+int hybrid_3prps_difference(const hybrid_3prps_real *X0, const hybrid_3prps_real *X1,
+    hybrid_3prps_real *step);
+size_t hybrid_3prps_difference_batch(size_t n, const hybrid_3prps_real *X0, const
+    hybrid_3prps_real *X1, hybrid_3prps_real *step, int *status);
+
+/* X0 moved by s times the displacement to X1: straight on, turning about one axis. In: X0 (NQ),
+   X1 (NQ), s (1). Out: X (NQ). */
+int hybrid_3prps_interpolate(const hybrid_3prps_real *X0, const hybrid_3prps_real *X1, const
+    hybrid_3prps_real *s, hybrid_3prps_real *X);
+size_t hybrid_3prps_interpolate_batch(size_t n, const hybrid_3prps_real *X0, const
+    hybrid_3prps_real *X1, const hybrid_3prps_real *s, hybrid_3prps_real *X, int *status);
 
 #ifdef __cplusplus
 }

@@ -102,6 +102,9 @@ typedef struct {
 extern const planar_3rpr_params planar_3rpr_default_params;
 extern const planar_3rpr_real planar_3rpr_HOME_X[PLANAR_3RPR_NQ];
 extern const planar_3rpr_real planar_3rpr_HOME_Q[PLANAR_3RPR_NJ];
+/* Places of the actuated joints in q, and their names, in the order of tau. */
+extern const size_t planar_3rpr_ACTUATED[PLANAR_3RPR_NU];
+extern const char *const planar_3rpr_ACTUATOR_NAMES[PLANAR_3RPR_NU];
 
 /* Prepare a model.  PLANAR_3RPR_INVALID, and the model is all NaN: a parameter is not finite or beyond
    1e+12; a mass is negative; an izz is negative (other entries of inertias do not
@@ -128,16 +131,8 @@ int planar_3rpr_H(const planar_3rpr_model *model, const planar_3rpr_real *X, pla
 size_t planar_3rpr_H_batch(const planar_3rpr_model *model, size_t n, const planar_3rpr_real *X,
     planar_3rpr_real *H, int *status);
 
-/* M, Z and H together, sharing the work. 232 mul, 159 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V
-   (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
-int planar_3rpr_dynamics(const planar_3rpr_model *model, const planar_3rpr_real *X, const
-    planar_3rpr_real *V, planar_3rpr_real *M, planar_3rpr_real *Z, planar_3rpr_real *H);
-size_t planar_3rpr_dynamics_batch(const planar_3rpr_model *model, size_t n, const planar_3rpr_real
-    *X, const planar_3rpr_real *V, planar_3rpr_real *M, planar_3rpr_real *Z, planar_3rpr_real *H,
-    int *status);
-
-/* Displacements q of all joints, on the assembly branch of home. 39 mul, 27 add, 3 div, 3 sqrt, 3
-   trig. In: X (NQ). Out: q (NJ). */
+/* Displacements q of all joints. They are those of the assembly branch of home. 39 mul, 27 add, 3
+   div, 3 sqrt, 3 trig. In: X (NQ). Out: q (NJ). */
 int planar_3rpr_inverse_kinematics(const planar_3rpr_model *model, const planar_3rpr_real *X,
     planar_3rpr_real *q);
 size_t planar_3rpr_inverse_kinematics_batch(const planar_3rpr_model *model, size_t n, const
@@ -157,6 +152,14 @@ int planar_3rpr_joint_accelerations(const planar_3rpr_model *model, const planar
 size_t planar_3rpr_joint_accelerations_batch(const planar_3rpr_model *model, size_t n, const
     planar_3rpr_real *X, const planar_3rpr_real *V, const planar_3rpr_real *A, planar_3rpr_real
     *accelerations, int *status);
+
+/* M, Z and H together, sharing the work. 232 mul, 159 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V
+   (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
+int planar_3rpr_dynamics(const planar_3rpr_model *model, const planar_3rpr_real *X, const
+    planar_3rpr_real *V, planar_3rpr_real *M, planar_3rpr_real *Z, planar_3rpr_real *H);
+size_t planar_3rpr_dynamics_batch(const planar_3rpr_model *model, size_t n, const planar_3rpr_real
+    *X, const planar_3rpr_real *V, planar_3rpr_real *M, planar_3rpr_real *Z, planar_3rpr_real *H,
+    int *status);
 
 /* Actuator forces tau for the acceleration A, by Eq. 3. 186 mul, 129 add, 3 div, 3 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
@@ -178,8 +181,9 @@ size_t planar_3rpr_forward_dynamics_batch(const planar_3rpr_model *model, size_t
     planar_3rpr_real *X, const planar_3rpr_real *V, const planar_3rpr_real *tau, const
     planar_3rpr_real *wrench, planar_3rpr_real *A, int *status);
 
-/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
-   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
+/* A with the entries of passive extra coordinates that the others allow. It is A: there are no
+   passive extra coordinates, whose accelerations would follow. In: X (NQ), V (NV), A (NV), wrench
+   (NW, or NULL). Out: completed (NV). */
 int planar_3rpr_complete_acceleration(const planar_3rpr_model *model, const planar_3rpr_real *X,
     const planar_3rpr_real *V, const planar_3rpr_real *A, const planar_3rpr_real *wrench,
     planar_3rpr_real *completed);
@@ -187,9 +191,9 @@ size_t planar_3rpr_complete_acceleration_batch(const planar_3rpr_model *model, s
     planar_3rpr_real *X, const planar_3rpr_real *V, const planar_3rpr_real *A, const
     planar_3rpr_real *wrench, planar_3rpr_real *completed, int *status);
 
-/* Force of each leg on the platform at its platform joint, base axes. 162 mul, 105 add, 3 div, 3
-   sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
-   forces (3 x 3). */
+/* Force of each leg on the platform at its platform joint, base axes. The actuators give the
+   forces of inverse_dynamics. 162 mul, 105 add, 3 div, 3 sqrt, 0 trig; inverse dynamics apart.
+   In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (3 x 3). */
 int planar_3rpr_leg_reactions(const planar_3rpr_model *model, const planar_3rpr_real *X, const
     planar_3rpr_real *V, const planar_3rpr_real *A, const planar_3rpr_real *wrench,
     planar_3rpr_real *forces);
@@ -197,37 +201,84 @@ size_t planar_3rpr_leg_reactions_batch(const planar_3rpr_model *model, size_t n,
     planar_3rpr_real *X, const planar_3rpr_real *V, const planar_3rpr_real *A, const
     planar_3rpr_real *wrench, planar_3rpr_real *forces, int *status);
 
-/* Kinetic and potential energy; the latter is zero at the base origin. In: X (NQ), V (NV). Out:
-   kinetic (1), potential (1). */
+/* Kinetic and potential energy [J]; the latter is zero at the base origin. In: X (NQ), V (NV).
+   Out: kinetic (1), potential (1). */
 int planar_3rpr_energy(const planar_3rpr_model *model, const planar_3rpr_real *X, const
     planar_3rpr_real *V, planar_3rpr_real *kinetic, planar_3rpr_real *potential);
 size_t planar_3rpr_energy_batch(const planar_3rpr_model *model, size_t n, const planar_3rpr_real
     *X, const planar_3rpr_real *V, planar_3rpr_real *kinetic, planar_3rpr_real *potential, int
     *status);
 
-/* X at which the driven joints stand at q_actuated, by Gauss-Newton from X0; extra coordinates
-   that the drives do not determine stay. In: q_actuated (NU), X0 (NQ). Out: X (NQ). */
-int planar_3rpr_forward_kinematics(const planar_3rpr_model *model, const planar_3rpr_real
-    *q_actuated, const planar_3rpr_real *X0, planar_3rpr_real *X);
-size_t planar_3rpr_forward_kinematics_batch(const planar_3rpr_model *model, size_t n, const
-    planar_3rpr_real *q_actuated, const planar_3rpr_real *X0, planar_3rpr_real *X, int *status);
-
-/* Singular values of H in descending order, moment rows divided by the rms distance of the
-   platform points from their centroid; for every leg the least tested pivot as a fraction of its
-   scale. 58 mul, 45 add, 3 div, 7 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
+/* How far a pose is from singularities: singular values of H, rows of moments divided by a
+   length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
+   distance of the platform points from their centroid, or where they coincide the rms size of the
+   legs. 58 mul, 45 add, 3 div, 7 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
    (3), legs (3). */
 int planar_3rpr_condition(const planar_3rpr_model *model, const planar_3rpr_real *X,
     planar_3rpr_real *sigma, planar_3rpr_real *legs);
 size_t planar_3rpr_condition_batch(const planar_3rpr_model *model, size_t n, const
     planar_3rpr_real *X, planar_3rpr_real *sigma, planar_3rpr_real *legs, int *status);
 
-/* base_R_platform; a quaternion need not be normalised. In: X (NQ). Out: R (2 x 2). */
+/* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
+   that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
+   X0 (NQ). Out: X (NQ). */
+int planar_3rpr_forward_kinematics(const planar_3rpr_model *model, const planar_3rpr_real
+    *q_actuated, const planar_3rpr_real *X0, planar_3rpr_real *X);
+size_t planar_3rpr_forward_kinematics_batch(const planar_3rpr_model *model, size_t n, const
+    planar_3rpr_real *q_actuated, const planar_3rpr_real *X0, planar_3rpr_real *X, int *status);
+
+/* Power that friction takes, not negative; the rate of energy is power less this. In: X (NQ), V
+   (NV). Out: dissipation (1). */
+int planar_3rpr_dissipation(const planar_3rpr_model *model, const planar_3rpr_real *X, const
+    planar_3rpr_real *V, planar_3rpr_real *dissipation);
+size_t planar_3rpr_dissipation_batch(const planar_3rpr_model *model, size_t n, const
+    planar_3rpr_real *X, const planar_3rpr_real *V, planar_3rpr_real *dissipation, int *status);
+
+/* Generalised momentum M V. 106 mul, 76 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+   momentum (NV). */
+int planar_3rpr_momentum(const planar_3rpr_model *model, const planar_3rpr_real *X, const
+    planar_3rpr_real *V, planar_3rpr_real *momentum);
+size_t planar_3rpr_momentum_batch(const planar_3rpr_model *model, size_t n, const planar_3rpr_real
+    *X, const planar_3rpr_real *V, planar_3rpr_real *momentum, int *status);
+
+/* Displacements of the actuated joints, in the order of tau. 39 mul, 27 add, 3 div, 3 sqrt, 3
+   trig. In: X (NQ). Out: q (NU). */
+int planar_3rpr_actuator_positions(const planar_3rpr_model *model, const planar_3rpr_real *X,
+    planar_3rpr_real *q);
+size_t planar_3rpr_actuator_positions_batch(const planar_3rpr_model *model, size_t n, const
+    planar_3rpr_real *X, planar_3rpr_real *q, int *status);
+
+/* Rates of the actuated joints, in the order of tau. 60 mul, 39 add, 3 div, 3 sqrt, 0 trig. In: X
+   (NQ), V (NV). Out: rates (NU). */
+int planar_3rpr_actuator_rates(const planar_3rpr_model *model, const planar_3rpr_real *X, const
+    planar_3rpr_real *V, planar_3rpr_real *rates);
+size_t planar_3rpr_actuator_rates_batch(const planar_3rpr_model *model, size_t n, const
+    planar_3rpr_real *X, const planar_3rpr_real *V, planar_3rpr_real *rates, int *status);
+
+/* Accelerations of the actuated joints, in the order of tau. 99 mul, 63 add, 3 div, 3 sqrt, 0
+   trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
+int planar_3rpr_actuator_accelerations(const planar_3rpr_model *model, const planar_3rpr_real *X,
+    const planar_3rpr_real *V, const planar_3rpr_real *A, planar_3rpr_real *accelerations);
+size_t planar_3rpr_actuator_accelerations_batch(const planar_3rpr_model *model, size_t n, const
+    planar_3rpr_real *X, const planar_3rpr_real *V, const planar_3rpr_real *A, planar_3rpr_real
+    *accelerations, int *status);
+
+/* Power that actuators give to the mechanism: tau times their rates. In: X (NQ), V (NV), tau
+   (NU). Out: power (1). */
+int planar_3rpr_power(const planar_3rpr_model *model, const planar_3rpr_real *X, const
+    planar_3rpr_real *V, const planar_3rpr_real *tau, planar_3rpr_real *power);
+size_t planar_3rpr_power_batch(const planar_3rpr_model *model, size_t n, const planar_3rpr_real
+    *X, const planar_3rpr_real *V, const planar_3rpr_real *tau, planar_3rpr_real *power, int
+    *status);
+
+/* base_R_platform at X; a quaternion need not be normalised. In: X (NQ). Out: R (2 x 2). */
 int planar_3rpr_rotation(const planar_3rpr_real *X, planar_3rpr_real *R);
 size_t planar_3rpr_rotation_batch(size_t n, const planar_3rpr_real *X, planar_3rpr_real *R, int
     *status);
 
-/* X of the platform at origin t with rotation matrix R. INVALID where R has not orthonormal rows,
-   to 1e-06 (float: 1e-5), and determinant +1. In: t (2), R (2 x 2). Out: X (NQ). */
+/* X of the platform at origin t with rotation matrix R; extra coordinates zero. INVALID where R
+   has not orthonormal rows, to 1e-06 (float: 1e-5), and determinant +1. In: t (2), R (2 x 2).
+   Out: X (NQ). */
 int planar_3rpr_pose(const planar_3rpr_real *t, const planar_3rpr_real *R, planar_3rpr_real *X);
 size_t planar_3rpr_pose_batch(size_t n, const planar_3rpr_real *t, const planar_3rpr_real *R,
     planar_3rpr_real *X, int *status);
@@ -237,6 +288,27 @@ int planar_3rpr_X_dot(const planar_3rpr_real *X, const planar_3rpr_real *V, plan
     *X_dot);
 size_t planar_3rpr_X_dot_batch(size_t n, const planar_3rpr_real *X, const planar_3rpr_real *V,
     planar_3rpr_real *X_dot, int *status);
+
+/* X moved by a displacement: (t + d, exp([phi]) R, y + dy) of step = (d, phi, dy). In: X (NQ),
+   step (NV). Out: X_moved (NQ). */
+int planar_3rpr_retract(const planar_3rpr_real *X, const planar_3rpr_real *step, planar_3rpr_real
+    *X_moved);
+size_t planar_3rpr_retract_batch(size_t n, const planar_3rpr_real *X, const planar_3rpr_real
+    *step, planar_3rpr_real *X_moved, int *status);
+
+/* The displacement from X0 to X1, the inverse of retract; rotations the shorter way. In: X0 (NQ),
+   X1 (NQ). Out: step (NV). */
+int planar_3rpr_difference(const planar_3rpr_real *X0, const planar_3rpr_real *X1,
+    planar_3rpr_real *step);
+size_t planar_3rpr_difference_batch(size_t n, const planar_3rpr_real *X0, const planar_3rpr_real
+    *X1, planar_3rpr_real *step, int *status);
+
+/* X0 moved by s times the displacement to X1: straight on, turning about one axis. In: X0 (NQ),
+   X1 (NQ), s (1). Out: X (NQ). */
+int planar_3rpr_interpolate(const planar_3rpr_real *X0, const planar_3rpr_real *X1, const
+    planar_3rpr_real *s, planar_3rpr_real *X);
+size_t planar_3rpr_interpolate_batch(size_t n, const planar_3rpr_real *X0, const planar_3rpr_real
+    *X1, const planar_3rpr_real *s, planar_3rpr_real *X, int *status);
 
 #ifdef __cplusplus
 }

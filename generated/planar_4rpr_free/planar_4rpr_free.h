@@ -127,6 +127,9 @@ typedef struct {
 extern const planar_4rpr_free_params planar_4rpr_free_default_params;
 extern const planar_4rpr_free_real planar_4rpr_free_HOME_X[PLANAR_4RPR_FREE_NQ];
 extern const planar_4rpr_free_real planar_4rpr_free_HOME_Q[PLANAR_4RPR_FREE_NJ];
+/* Places of the actuated joints in q, and their names, in the order of tau. */
+extern const size_t planar_4rpr_free_ACTUATED[PLANAR_4RPR_FREE_NU];
+extern const char *const planar_4rpr_free_ACTUATOR_NAMES[PLANAR_4RPR_FREE_NU];
 
 /* Prepare a model.  PLANAR_4RPR_FREE_INVALID, and the model is all NaN: a parameter is not finite or beyond
    1e+12; a mass is negative; an izz is negative (other entries of inertias do not
@@ -156,17 +159,8 @@ int planar_4rpr_free_H(const planar_4rpr_free_model *model, const planar_4rpr_fr
 size_t planar_4rpr_free_H_batch(const planar_4rpr_free_model *model, size_t n, const
     planar_4rpr_free_real *X, planar_4rpr_free_real *H, int *status);
 
-/* M, Z and H together, sharing the work. 303 mul, 215 add, 4 div, 4 sqrt, 0 trig. In: X (NQ), V
-   (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
-int planar_4rpr_free_dynamics(const planar_4rpr_free_model *model, const planar_4rpr_free_real *X,
-    const planar_4rpr_free_real *V, planar_4rpr_free_real *M, planar_4rpr_free_real *Z,
-    planar_4rpr_free_real *H);
-size_t planar_4rpr_free_dynamics_batch(const planar_4rpr_free_model *model, size_t n, const
-    planar_4rpr_free_real *X, const planar_4rpr_free_real *V, planar_4rpr_free_real *M,
-    planar_4rpr_free_real *Z, planar_4rpr_free_real *H, int *status);
-
-/* Displacements q of all joints, on the assembly branch of home. 52 mul, 36 add, 4 div, 4 sqrt, 4
-   trig. In: X (NQ). Out: q (NJ). */
+/* Displacements q of all joints. They are those of the assembly branch of home. 52 mul, 36 add, 4
+   div, 4 sqrt, 4 trig. In: X (NQ). Out: q (NJ). */
 int planar_4rpr_free_inverse_kinematics(const planar_4rpr_free_model *model, const
     planar_4rpr_free_real *X, planar_4rpr_free_real *q);
 size_t planar_4rpr_free_inverse_kinematics_batch(const planar_4rpr_free_model *model, size_t n,
@@ -189,6 +183,15 @@ size_t planar_4rpr_free_joint_accelerations_batch(const planar_4rpr_free_model *
     const planar_4rpr_free_real *X, const planar_4rpr_free_real *V, const planar_4rpr_free_real
     *A, planar_4rpr_free_real *accelerations, int *status);
 
+/* M, Z and H together, sharing the work. 303 mul, 215 add, 4 div, 4 sqrt, 0 trig. In: X (NQ), V
+   (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
+int planar_4rpr_free_dynamics(const planar_4rpr_free_model *model, const planar_4rpr_free_real *X,
+    const planar_4rpr_free_real *V, planar_4rpr_free_real *M, planar_4rpr_free_real *Z,
+    planar_4rpr_free_real *H);
+size_t planar_4rpr_free_dynamics_batch(const planar_4rpr_free_model *model, size_t n, const
+    planar_4rpr_free_real *X, const planar_4rpr_free_real *V, planar_4rpr_free_real *M,
+    planar_4rpr_free_real *Z, planar_4rpr_free_real *H, int *status);
+
 /* Actuator forces tau for the acceleration A, by Eq. 3. 240 mul, 169 add, 4 div, 4 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU). */
@@ -209,8 +212,9 @@ size_t planar_4rpr_free_forward_dynamics_batch(const planar_4rpr_free_model *mod
     const planar_4rpr_free_real *X, const planar_4rpr_free_real *V, const planar_4rpr_free_real
     *tau, const planar_4rpr_free_real *wrench, planar_4rpr_free_real *A, int *status);
 
-/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
-   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
+/* A with the entries of passive extra coordinates that the others allow. It is A: there are no
+   passive extra coordinates, whose accelerations would follow. In: X (NQ), V (NV), A (NV), wrench
+   (NW, or NULL). Out: completed (NV). */
 int planar_4rpr_free_complete_acceleration(const planar_4rpr_free_model *model, const
     planar_4rpr_free_real *X, const planar_4rpr_free_real *V, const planar_4rpr_free_real *A,
     const planar_4rpr_free_real *wrench, planar_4rpr_free_real *completed);
@@ -218,9 +222,9 @@ size_t planar_4rpr_free_complete_acceleration_batch(const planar_4rpr_free_model
     const planar_4rpr_free_real *X, const planar_4rpr_free_real *V, const planar_4rpr_free_real
     *A, const planar_4rpr_free_real *wrench, planar_4rpr_free_real *completed, int *status);
 
-/* Force of each leg on the platform at its platform joint, base axes. 216 mul, 140 add, 4 div, 4
-   sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
-   forces (4 x 3). */
+/* Force of each leg on the platform at its platform joint, base axes. The actuators give the
+   forces of inverse_dynamics. 216 mul, 140 add, 4 div, 4 sqrt, 0 trig; inverse dynamics apart.
+   In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (4 x 3). */
 int planar_4rpr_free_leg_reactions(const planar_4rpr_free_model *model, const
     planar_4rpr_free_real *X, const planar_4rpr_free_real *V, const planar_4rpr_free_real *A,
     const planar_4rpr_free_real *wrench, planar_4rpr_free_real *forces);
@@ -228,8 +232,8 @@ size_t planar_4rpr_free_leg_reactions_batch(const planar_4rpr_free_model *model,
     planar_4rpr_free_real *X, const planar_4rpr_free_real *V, const planar_4rpr_free_real *A,
     const planar_4rpr_free_real *wrench, planar_4rpr_free_real *forces, int *status);
 
-/* Kinetic and potential energy; the latter is zero at the base origin. In: X (NQ), V (NV). Out:
-   kinetic (1), potential (1). */
+/* Kinetic and potential energy [J]; the latter is zero at the base origin. In: X (NQ), V (NV).
+   Out: kinetic (1), potential (1). */
 int planar_4rpr_free_energy(const planar_4rpr_free_model *model, const planar_4rpr_free_real *X,
     const planar_4rpr_free_real *V, planar_4rpr_free_real *kinetic, planar_4rpr_free_real
     *potential);
@@ -237,17 +241,10 @@ size_t planar_4rpr_free_energy_batch(const planar_4rpr_free_model *model, size_t
     planar_4rpr_free_real *X, const planar_4rpr_free_real *V, planar_4rpr_free_real *kinetic,
     planar_4rpr_free_real *potential, int *status);
 
-/* X at which the driven joints stand at q_actuated, by Gauss-Newton from X0; extra coordinates
-   that the drives do not determine stay. In: q_actuated (NU), X0 (NQ). Out: X (NQ). */
-int planar_4rpr_free_forward_kinematics(const planar_4rpr_free_model *model, const
-    planar_4rpr_free_real *q_actuated, const planar_4rpr_free_real *X0, planar_4rpr_free_real *X);
-size_t planar_4rpr_free_forward_kinematics_batch(const planar_4rpr_free_model *model, size_t n,
-    const planar_4rpr_free_real *q_actuated, const planar_4rpr_free_real *X0,
-    planar_4rpr_free_real *X, int *status);
-
-/* Singular values of H in descending order, moment rows divided by the rms distance of the
-   platform points from their centroid; for every leg the least tested pivot as a fraction of its
-   scale. 74 mul, 60 add, 3 div, 9 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
+/* How far a pose is from singularities: singular values of H, rows of moments divided by a
+   length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
+   distance of the platform points from their centroid, or where they coincide the rms size of the
+   legs. 74 mul, 60 add, 3 div, 9 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
    (3), legs (4). */
 int planar_4rpr_free_condition(const planar_4rpr_free_model *model, const planar_4rpr_free_real
     *X, planar_4rpr_free_real *sigma, planar_4rpr_free_real *legs);
@@ -255,13 +252,72 @@ size_t planar_4rpr_free_condition_batch(const planar_4rpr_free_model *model, siz
     planar_4rpr_free_real *X, planar_4rpr_free_real *sigma, planar_4rpr_free_real *legs, int
     *status);
 
-/* base_R_platform; a quaternion need not be normalised. In: X (NQ). Out: R (2 x 2). */
+/* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
+   that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
+   X0 (NQ). Out: X (NQ). */
+int planar_4rpr_free_forward_kinematics(const planar_4rpr_free_model *model, const
+    planar_4rpr_free_real *q_actuated, const planar_4rpr_free_real *X0, planar_4rpr_free_real *X);
+size_t planar_4rpr_free_forward_kinematics_batch(const planar_4rpr_free_model *model, size_t n,
+    const planar_4rpr_free_real *q_actuated, const planar_4rpr_free_real *X0,
+    planar_4rpr_free_real *X, int *status);
+
+/* Power that friction takes, not negative; the rate of energy is power less this. In: X (NQ), V
+   (NV). Out: dissipation (1). */
+int planar_4rpr_free_dissipation(const planar_4rpr_free_model *model, const planar_4rpr_free_real
+    *X, const planar_4rpr_free_real *V, planar_4rpr_free_real *dissipation);
+size_t planar_4rpr_free_dissipation_batch(const planar_4rpr_free_model *model, size_t n, const
+    planar_4rpr_free_real *X, const planar_4rpr_free_real *V, planar_4rpr_free_real *dissipation,
+    int *status);
+
+/* Generalised momentum M V. 140 mul, 105 add, 4 div, 4 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+   momentum (NV). */
+int planar_4rpr_free_momentum(const planar_4rpr_free_model *model, const planar_4rpr_free_real *X,
+    const planar_4rpr_free_real *V, planar_4rpr_free_real *momentum);
+size_t planar_4rpr_free_momentum_batch(const planar_4rpr_free_model *model, size_t n, const
+    planar_4rpr_free_real *X, const planar_4rpr_free_real *V, planar_4rpr_free_real *momentum, int
+    *status);
+
+/* Displacements of the actuated joints, in the order of tau. 52 mul, 36 add, 4 div, 4 sqrt, 4
+   trig. In: X (NQ). Out: q (NU). */
+int planar_4rpr_free_actuator_positions(const planar_4rpr_free_model *model, const
+    planar_4rpr_free_real *X, planar_4rpr_free_real *q);
+size_t planar_4rpr_free_actuator_positions_batch(const planar_4rpr_free_model *model, size_t n,
+    const planar_4rpr_free_real *X, planar_4rpr_free_real *q, int *status);
+
+/* Rates of the actuated joints, in the order of tau. 80 mul, 52 add, 4 div, 4 sqrt, 0 trig. In: X
+   (NQ), V (NV). Out: rates (NU). */
+int planar_4rpr_free_actuator_rates(const planar_4rpr_free_model *model, const
+    planar_4rpr_free_real *X, const planar_4rpr_free_real *V, planar_4rpr_free_real *rates);
+size_t planar_4rpr_free_actuator_rates_batch(const planar_4rpr_free_model *model, size_t n, const
+    planar_4rpr_free_real *X, const planar_4rpr_free_real *V, planar_4rpr_free_real *rates, int
+    *status);
+
+/* Accelerations of the actuated joints, in the order of tau. 132 mul, 84 add, 4 div, 4 sqrt, 0
+   trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
+int planar_4rpr_free_actuator_accelerations(const planar_4rpr_free_model *model, const
+    planar_4rpr_free_real *X, const planar_4rpr_free_real *V, const planar_4rpr_free_real *A,
+    planar_4rpr_free_real *accelerations);
+size_t planar_4rpr_free_actuator_accelerations_batch(const planar_4rpr_free_model *model, size_t
+    n, const planar_4rpr_free_real *X, const planar_4rpr_free_real *V, const planar_4rpr_free_real
+    *A, planar_4rpr_free_real *accelerations, int *status);
+
+/* Power that actuators give to the mechanism: tau times their rates. In: X (NQ), V (NV), tau
+   (NU). Out: power (1). */
+int planar_4rpr_free_power(const planar_4rpr_free_model *model, const planar_4rpr_free_real *X,
+    const planar_4rpr_free_real *V, const planar_4rpr_free_real *tau, planar_4rpr_free_real
+    *power);
+size_t planar_4rpr_free_power_batch(const planar_4rpr_free_model *model, size_t n, const
+    planar_4rpr_free_real *X, const planar_4rpr_free_real *V, const planar_4rpr_free_real *tau,
+    planar_4rpr_free_real *power, int *status);
+
+/* base_R_platform at X; a quaternion need not be normalised. In: X (NQ). Out: R (2 x 2). */
 int planar_4rpr_free_rotation(const planar_4rpr_free_real *X, planar_4rpr_free_real *R);
 size_t planar_4rpr_free_rotation_batch(size_t n, const planar_4rpr_free_real *X,
     planar_4rpr_free_real *R, int *status);
 
-/* X of the platform at origin t with rotation matrix R. INVALID where R has not orthonormal rows,
-   to 1e-06 (float: 1e-5), and determinant +1. In: t (2), R (2 x 2). Out: X (NQ). */
+/* X of the platform at origin t with rotation matrix R; extra coordinates zero. INVALID where R
+   has not orthonormal rows, to 1e-06 (float: 1e-5), and determinant +1. In: t (2), R (2 x 2).
+   Out: X (NQ). */
 int planar_4rpr_free_pose(const planar_4rpr_free_real *t, const planar_4rpr_free_real *R,
     planar_4rpr_free_real *X);
 size_t planar_4rpr_free_pose_batch(size_t n, const planar_4rpr_free_real *t, const
@@ -272,6 +328,28 @@ int planar_4rpr_free_X_dot(const planar_4rpr_free_real *X, const planar_4rpr_fre
     planar_4rpr_free_real *X_dot);
 size_t planar_4rpr_free_X_dot_batch(size_t n, const planar_4rpr_free_real *X, const
     planar_4rpr_free_real *V, planar_4rpr_free_real *X_dot, int *status);
+
+/* X moved by a displacement: (t + d, exp([phi]) R, y + dy) of step = (d, phi, dy). In: X (NQ),
+   step (NV). Out: X_moved (NQ). */
+int planar_4rpr_free_retract(const planar_4rpr_free_real *X, const planar_4rpr_free_real *step,
+    planar_4rpr_free_real *X_moved);
+size_t planar_4rpr_free_retract_batch(size_t n, const planar_4rpr_free_real *X, const
+    planar_4rpr_free_real *step, planar_4rpr_free_real *X_moved, int *status);
+
+/* The displacement from X0 to X1, the inverse of retract; rotations the shorter way. In: X0 (NQ),
+   X1 (NQ). Out: step (NV). */
+int planar_4rpr_free_difference(const planar_4rpr_free_real *X0, const planar_4rpr_free_real *X1,
+    planar_4rpr_free_real *step);
+size_t planar_4rpr_free_difference_batch(size_t n, const planar_4rpr_free_real *X0, const
+    planar_4rpr_free_real *X1, planar_4rpr_free_real *step, int *status);
+
+/* X0 moved by s times the displacement to X1: straight on, turning about one axis. In: X0 (NQ),
+   X1 (NQ), s (1). Out: X (NQ). */
+int planar_4rpr_free_interpolate(const planar_4rpr_free_real *X0, const planar_4rpr_free_real *X1,
+    const planar_4rpr_free_real *s, planar_4rpr_free_real *X);
+size_t planar_4rpr_free_interpolate_batch(size_t n, const planar_4rpr_free_real *X0, const
+    planar_4rpr_free_real *X1, const planar_4rpr_free_real *s, planar_4rpr_free_real *X, int
+    *status);
 
 #ifdef __cplusplus
 }

@@ -16,6 +16,14 @@
 typedef planar_mixed_real real;
 typedef planar_mixed_model prepared;
 
+enum {
+    OK = PLANAR_MIXED_OK,
+    UNREACHABLE = PLANAR_MIXED_UNREACHABLE,
+    SINGULAR = PLANAR_MIXED_SINGULAR,
+    INVALID = PLANAR_MIXED_INVALID,
+    NOT_CONVERGED = PLANAR_MIXED_NOT_CONVERGED
+};
+
 #define R(x) ((real)(x))
 #define UNLESS(condition) ((condition) ? R(0) : R(1))  /* flag of what must hold */
 #define LANES 8  /* states that a batch runs side by side */
@@ -64,6 +72,15 @@ INLINE real larger(real x, real y)
 INLINE real lesser(real x, real y)
 {
     return x < y || x != x ? x : y;
+}
+
+INLINE real largest(const real *x, size_t n)
+{
+    real size = 0;
+    for (size_t i = 0; i < n; ++i) {
+        size = magnitude(x[i]) > size ? magnitude(x[i]) : size;
+    }
+    return size;
 }
 
 INLINE real total(const real *x, size_t n)
@@ -126,26 +143,52 @@ INLINE void check(size_t size, size_t w, const real *x, real *flags)
 }
 
 /* Input, given state by state, with its states side by side: entry e of state k at e*w + k. */
-INLINE const real *take(size_t size, size_t w, const real *x, real *lanes, verdict *t)
+INLINE const real *side_by_side(size_t size, size_t w, const real *x, real *lanes, real *flags)
 {
     for (size_t e = 0; e < size && w > 1; ++e) {
         for (size_t k = 0; k < w; ++k) {
             lanes[e*w + k] = x[size*k + e];
         }
     }
-    check(size, w, w > 1 ? lanes : x, t->invalid);
+    check(size, w, w > 1 ? lanes : x, flags);
     return w > 1 ? lanes : x;
+}
+
+/* The same for input that may be NULL: then all its entries are `none`. */
+INLINE const real *optional(size_t size, size_t w, const real *x, real none, real *lanes, real *flags)
+{
+    for (size_t e = 0; e < size*w && !x; ++e) {
+        lanes[e] = none;
+    }
+    return x ? side_by_side(size, w, x, lanes, flags) : lanes;
+}
+
+/* Flag the states of an input, NULL or given state by state, with entries that are not positive. */
+INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
+{
+    for (size_t e = 0; e < size*w && x; ++e) {
+        flags[e/size] += UNLESS(x[e] > 0);
+    }
 }
 
 INLINE void judge(const verdict *t, size_t w, int *code)
 {
     for (size_t k = 0; k < w; ++k) {
-        code[k] = t->invalid[k] > 0 ? PLANAR_MIXED_INVALID
-            : t->diverged[k] > 0 ? PLANAR_MIXED_NOT_CONVERGED
-            : t->unreachable[k] > 0 ? PLANAR_MIXED_UNREACHABLE
-            : t->singular[k] > 0 ? PLANAR_MIXED_SINGULAR
-            : t->overflow[k] > 0 ? PLANAR_MIXED_INVALID : PLANAR_MIXED_OK;
+        code[k] = t->invalid[k] > 0 ? INVALID
+            : t->diverged[k] > 0 ? NOT_CONVERGED
+            : t->unreachable[k] > 0 ? UNREACHABLE
+            : t->singular[k] > 0 ? SINGULAR
+            : t->overflow[k] > 0 ? INVALID : OK;
     }
+}
+
+/* The same as flags, for one state. */
+INLINE void blame(int code, verdict *t)
+{
+    t->invalid[0] += UNLESS(code != INVALID);
+    t->diverged[0] += UNLESS(code != NOT_CONVERGED);
+    t->unreachable[0] += UNLESS(code != UNREACHABLE);
+    t->singular[0] += UNLESS(code != SINGULAR);
 }
 
 /* Outputs of an impossible state. */
@@ -165,7 +208,7 @@ INLINE void deliver(const real *x, size_t size, size_t w, const int *code, real 
         }
     }
     for (size_t k = 0; k < w; ++k) {
-        if (code[k] != PLANAR_MIXED_OK) {
+        if (code[k] != OK) {
             refuse(size, out + size*k);
         }
     }
@@ -176,15 +219,13 @@ INLINE size_t record(const int *code, size_t w, int *status)
 {
     size_t failed = 0;
     for (size_t k = 0; k < w; ++k) {
-        failed += code[k] != PLANAR_MIXED_OK;
+        failed += code[k] != OK;
         if (status) {
             status[k] = code[k];
         }
     }
     return failed;
 }
-
-/* ---- what parameters must be: entries of n vectors or 3 x 3 matrices one after another ---- */
 
 /* What the reader of specifications allows; floats have less to offer. */
 #define ROUNDED BY_TYPE(1e-5, 1e-06, 1e-06)  /* lengths and products of unit vectors */
@@ -214,36 +255,6 @@ INLINE int none_negative(const real *x, size_t n)
     int ok = 1;
     for (size_t i = 0; i < n; ++i) {
         ok &= x[i] >= 0;
-    }
-    return ok;
-}
-
-INLINE int all_unit(const real *x, size_t n)
-{
-    int ok = 1;
-    for (size_t i = 0; i < n; ++i, x += 3) {
-        ok &= magnitude(root(x[0]*x[0] + x[1]*x[1] + x[2]*x[2]) - 1) <= ROUNDED;
-    }
-    return ok;
-}
-
-/* Symmetric tensors whose principal moments are not negative, to OF_LARGEST: those that stay
-   positive definite, by the pivots of Cholesky's elimination, with that much more of each moment. */
-INLINE int all_inertias(const real *x, size_t n)
-{
-    int ok = 1;
-    for (size_t i = 0; i < n; ++i, x += 9) {
-        real size = 0, a[9];
-        for (size_t e = 0; e < 9; ++e) {
-            size = larger(size, magnitude(x[e]));
-        }
-        for (size_t e = 0; e < 9; ++e) {
-            a[e] = size > 0 ? x[e]/size + (e%4 == 0 ? OF_LARGEST : 0) : (e%4 == 0 ? R(1) : R(0));
-        }
-        ok &= magnitude(a[1] - a[3]) <= OF_LARGEST && magnitude(a[2] - a[6]) <= OF_LARGEST
-            && magnitude(a[5] - a[7]) <= OF_LARGEST;
-        const real yy = a[4] - a[3]*a[3]/a[0], yz = a[7] - a[3]*a[6]/a[0], zz = a[8] - a[6]*a[6]/a[0];
-        ok &= a[0] > 0 && yy > 0 && zz - yz*yz/yy > 0;
     }
     return ok;
 }
@@ -383,6 +394,12 @@ const planar_mixed_params planar_mixed_default_params = {
 
 const planar_mixed_real planar_mixed_HOME_X[PLANAR_MIXED_NQ] = {R(0.03), R(-0.02), R(0.09999999999999999)};
 const planar_mixed_real planar_mixed_HOME_Q[PLANAR_MIXED_NJ] = {R(1.947212705196237e-17), R(0.62), R(0.6999999999999998), R(-1.1999999999999997), R(0.14999999999999997), R(-0.6999999999999998)};
+const size_t planar_mixed_ACTUATED[PLANAR_MIXED_NU] = {1, 2, 4};
+const char *const planar_mixed_ACTUATOR_NAMES[PLANAR_MIXED_NU] = {
+    "leg1_joint2",
+    "leg2_joint1",
+    "leg3_joint1",
+};
 
 static int acceptable(const planar_mixed_params *p)
 {
@@ -468,7 +485,7 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
 {
     if (!acceptable(params)) {
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
-        return PLANAR_MIXED_INVALID;
+        return INVALID;
     }
     real total_rpr = 0;
     real total_rpr_x = 0;
@@ -845,10 +862,10 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
     model->h_star_y = h_star_y;
     model->legs_size = legs_size;
     model->m_star = m_star;
-    return PLANAR_MIXED_OK;
+    return OK;
 }
 
-/* ---- linear equations ---- */
+/* ---- operations ---- */
 
 /* Rows change places only for a pivot that is larger by this factor: less often, and with
    rounding errors as small as with the largest pivots. */
@@ -858,7 +875,7 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
 #define NEARLY 2
 
 /* other -= factor*row */
-INLINE void subtract(size_t n, real factor, const real *restrict row, real *restrict other)
+INLINE void eliminate(size_t n, real factor, const real *restrict row, real *restrict other)
 {
     for (size_t j = 0; j < n; ++j) {
         other[j] -= factor*row[j];
@@ -904,7 +921,7 @@ INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict 
         *singular += UNLESS(magnitude(pivot[p]) > PIVOT);
         x[p] = 1/pivot[p];
         for (size_t i = p + 1; i < n; ++i) {
-            subtract(stride, a[i*stride + p]*x[p], pivot, a + i*stride);
+            eliminate(stride, a[i*stride + p]*x[p], pivot, a + i*stride);
         }
     }
     for (size_t p = n; p-- > 0;) {
@@ -1007,27 +1024,49 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
     }
 }
 
-/* Systems of w states side by side: entry (i, j) of state k is a[(i*stride + j)*w + k]. */
-INLINE void solve(size_t n, size_t stride, size_t w, real *a, real *x, real *singular)
+/* Length of the rows of a system of n equations, whose right side stands in column n. */
+INLINE size_t stride_of(size_t n, size_t w)
 {
-    if (w == 1) {
-        solve_one(n, stride, a, x, singular);
-    } else {
-        solve_lanes(n, a, x, singular);
-    }
+    return w == 1 ? (n + 4)/4*4 : n + 1;
 }
 
-/* Add the wrench to a generalised force; extra coordinates get none. */
-INLINE void add_wrench(const real *wrench, real sign, size_t w, real *force)
+INLINE void set_matrix(size_t n, size_t w, const real *a, real *rows)
 {
-    for (size_t k = 0; k < w; ++k) {
-        for (size_t e = 0; e < 3; ++e) {
-            force[e*w + k] += sign*wrench[e*w + k];
+    for (size_t i = 0; i < n; ++i) {
+        for (size_t e = 0; e < n*w; ++e) {
+            rows[i*stride_of(n, w)*w + e] = a[i*n*w + e];
         }
     }
 }
 
-#define BIG 3  /* largest number of rows or columns of what follows */
+INLINE void set_right_side(size_t n, size_t w, const real *b, real *rows)
+{
+    const size_t stride = stride_of(n, w);
+    for (size_t i = 0; i < n; ++i) {
+        for (size_t e = n*w; e < stride*w; ++e) {
+            rows[i*stride*w + e] = e < (n + 1)*w ? b[i*w + e - n*w] : 0;
+        }
+    }
+}
+
+/* x with a x = b, where a stands in rows; of one state, and of w, one or LANES, side by side. */
+INLINE void solve_state(size_t n, const real *b, real *rows, real *x, real *singular)
+{
+    set_right_side(n, 1, b, rows);
+    solve_one(n, stride_of(n, 1), rows, x, singular);
+}
+
+INLINE void solve(size_t n, size_t w, const real *b, real *rows, real *x, real *singular)
+{
+    if (w == 1) {
+        solve_state(n, b, rows, x, singular);
+    } else {
+        set_right_side(n, LANES, b, rows);
+        solve_lanes(n, rows, x, singular);
+    }
+}
+
+#define BIG 3  /* most rows or columns of a matrix that is not square, or not solved */
 
 /* Reflect rows p, p + 1, ... so that column p is zero below row p; columns beyond go along.
    The reflection's vector is left in column p, the diagonal entry is returned. */
@@ -1054,7 +1093,7 @@ INLINE real reflect(size_t rows, size_t stride, size_t p, real *a)
 
 /* The shortest x with a x = b for independent rows of a[rows][columns]; returns the smallest
    diagonal entry of the triangle of a^T as a fraction of the largest. */
-static real least_norm(size_t rows, size_t columns, const real *a, const real *b, real *x)
+static real shortest(size_t rows, size_t columns, const real *a, const real *b, real *x)
 {
     real t[BIG*BIG] = {0}, diagonal[BIG] = {0}, u[BIG] = {0}, least = 0, most = 0;
     for (size_t i = 0; i < rows; ++i) {
@@ -1133,33 +1172,187 @@ static void least_squares(size_t rows, size_t n, real *a, real *x)
     }
     clear(x, n);
     if (rank) {
-        least_norm(rank, n, r, b, x);
+        shortest(rank, n, r, b, x);
     }
 }
 
-/* Residuals [m, rad] at which iterations stop, and that count as solved. */
-#define CLOSED BY_TYPE(5e-5, 1e-13, 1e-16)
-#define CONVERGED BY_TYPE(1e-4, 1e-9, 1e-9)
-
-INLINE real largest(const real *x, size_t n)
+/* Turn columns p and q of a[rows][columns] until they are perpendicular; returns whether they were
+   not, to rounding. */
+static int turn_columns(size_t rows, size_t columns, size_t p, size_t q, real *a)
 {
-    real size = 0;
-    for (size_t i = 0; i < n; ++i) {
-        size = magnitude(x[i]) > size ? magnitude(x[i]) : size;
+    real pp = 0, qq = 0, pq = 0;
+    for (size_t i = 0; i < rows; ++i) {
+        pp += a[i*columns + p]*a[i*columns + p];
+        qq += a[i*columns + q]*a[i*columns + q];
+        pq += a[i*columns + p]*a[i*columns + q];
     }
-    return size;
+    if (!(magnitude(pq) > ROUNDING*root(pp)*root(qq))) {
+        return 0;
+    }
+    const real cotangent = (qq - pp)/(2*pq), size = magnitude(cotangent);
+    const real t = (cotangent < 0 ? -1 : 1)/(size + root(1 + size*size));
+    const real c = 1/root(1 + t*t), s = c*t;
+    for (size_t i = 0; i < rows; ++i) {
+        const real x = a[i*columns + p], y = a[i*columns + q];
+        a[i*columns + p] = c*x - s*y;
+        a[i*columns + q] = s*x + c*y;
+    }
+    return 1;
 }
 
-/* Rows of [h^T | gap], h[3][n]. */
-INLINE void fill_rows(size_t n, const real *h, const real *gap, real *a)
+/* Singular values of a[m][n] in descending order, by one-sided Jacobi rotations. */
+INLINE void singular_values(size_t m, size_t n, const real *a, real *sigma)
 {
-    for (size_t i = 0; i < n; ++i) {
-        for (size_t j = 0; j < 3; ++j) {
-            a[i*4 + j] = h[j*n + i];
+    const size_t rows = m < n ? n : m, columns = m < n ? m : n;
+    const real size = largest(a, m*n);
+    real t[BIG*BIG] = {0};
+    clear(sigma, columns);
+    for (size_t i = 0; i < m; ++i) {
+        for (size_t j = 0; j < n; ++j) {
+            t[m < n ? j*m + i : i*n + j] = size > 0 ? a[i*n + j]/size : a[i*n + j];
         }
-        a[i*4 + 3] = gap[i];
+    }
+    for (int sweep = 0, turned = 1; sweep < 40 && turned; ++sweep) {
+        turned = 0;
+        for (size_t p = 0; p < columns; ++p) {
+            for (size_t q = p + 1; q < columns; ++q) {
+                turned |= turn_columns(rows, columns, p, q, t);
+            }
+        }
+    }
+    for (size_t j = 0; j < columns; ++j) {
+        real sum = 0;
+        for (size_t i = 0; i < rows; ++i) {
+            sum += t[i*columns + j]*t[i*columns + j];
+        }
+        const real value = size*root(sum);
+        size_t place = j;
+        for (; place > 0 && sigma[place - 1] < value; --place) {
+            sigma[place] = sigma[place - 1];
+        }
+        sigma[place] = value;
     }
 }
+
+/* a b, a[m][n], b[n][p]: entry (i, j) of state k of a matrix with n columns is [(i*n + j)*w + k]. */
+INLINE void product(size_t m, size_t n, size_t p, size_t w, const real *a, const real *b, real *x)
+{
+    for (size_t i = 0; i < m; ++i) {
+        for (size_t c = 0; c < p; ++c) {
+            for (size_t k = 0; k < w; ++k) {
+                real sum = 0;
+                for (size_t j = 0; j < n; ++j) {
+                    sum += a[(i*n + j)*w + k]*b[(j*p + c)*w + k];
+                }
+                x[(i*p + c)*w + k] = sum;
+            }
+        }
+    }
+}
+
+/* a . b */
+INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
+{
+    clear(x, w);
+    for (size_t i = 0; i < n; ++i) {
+        for (size_t k = 0; k < w; ++k) {
+            x[k] += a[i*w + k]*b[i*w + k];
+        }
+    }
+}
+
+/* Half of a^T b a. */
+INLINE void half_form(size_t n, size_t w, const real *a, const real *b, real *x)
+{
+    for (size_t k = 0; k < w; ++k) {
+        real sum = 0;
+        for (size_t i = 0; i < n; ++i) {
+            for (size_t j = 0; j < n; ++j) {
+                sum += a[i*w + k]*b[(i*n + j)*w + k]*a[j*w + k];
+            }
+        }
+        x[k] = sum/2;
+    }
+}
+
+/* Rows of n entries, as `places` tells. */
+INLINE void take(size_t rows, size_t n, const size_t *places, const real *a, real *x)
+{
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t e = 0; e < n; ++e) {
+            x[i*n + e] = a[places[i]*n + e];
+        }
+    }
+}
+
+INLINE void divide_rows(size_t rows, size_t n, size_t w, const size_t *places, const real *b, real *x)
+{
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t e = 0; e < n*w; ++e) {
+            x[places[i]*n*w + e] /= b[e%w];
+        }
+    }
+}
+
+/* Rows of a with n entries, each followed by that of b with p entries. */
+INLINE void beside(size_t rows, size_t n, size_t p, const real *a, const real *b, real *x)
+{
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t e = 0; e < n; ++e) {
+            x[i*(n + p) + e] = a[i*n + e];
+        }
+        for (size_t e = 0; e < p; ++e) {
+            x[i*(n + p) + n + e] = b[i*p + e];
+        }
+    }
+}
+
+/* To row places[i] of x: the row c[i] of n entries times b[i]. */
+INLINE void add_forces(size_t rows, size_t n, size_t w, const size_t *places, const real *b,
+        const real *c, real *x)
+{
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t e = 0; e < n*w; ++e) {
+            x[places[i]*n*w + e] += b[i*w + e%w]*c[i*n*w + e];
+        }
+    }
+}
+
+#define TURN (2*R(3.14159265358979323846264338327950288L))
+
+/* Angles in (-pi, pi]. */
+INLINE void wrap_turns(size_t rows, size_t n, const size_t *places, real *x)
+{
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t e = 0; e < n; ++e) {
+            real *const at = x + places[i]*n + e;
+            *at += TURN*whole(R(0.5) - *at/TURN);
+        }
+    }
+}
+
+#define TINY R(1e-09)  /* a length below this fraction of the legs' size is none */
+
+INLINE void angle_of_rotation(const real *a, real *x)
+{
+    const int turns = magnitude(a[0]*a[0] + a[1]*a[1] - 1) <= ROUNDED
+        && magnitude(a[2]*a[2] + a[3]*a[3] - 1) <= ROUNDED
+        && magnitude(a[0]*a[2] + a[1]*a[3]) <= ROUNDED && a[0]*a[3] - a[1]*a[2] > 0;
+    *x = turns ? angle(a[2], a[0]) : R(NAN);
+}
+
+INLINE void rotation_of_angle(const real *a, real *x)
+{
+    x[0] = x[3] = cosine(*a);
+    x[2] = sine(*a);
+    x[1] = -x[2];
+}
+
+/* Residuals [m, rad] at which searches stop, with steps that are halved and without, and that count
+   as solved. */
+#define CLOSED BY_TYPE(5e-5, 1e-13, 1e-16)
+#define MET BY_TYPE(5e-6, 1e-14, 1e-17)
+#define CONVERGED BY_TYPE(1e-4, 1e-09, 1e-09)
 
 /* X moved by a part of a small step. */
 static void moved(const real *X, const real *step, real part, real *to)
@@ -1932,24 +2125,6 @@ INLINE void dynamics_run(const prepared *m, size_t w, const real *X, const real 
     dynamics_after(m, w, s, M, Z);
 }
 
-INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real *V, real *M, real
-    *Z, real *H, int *code)
-{
-    real X_in[3*LANES], V_in[3*LANES], M_of[9*LANES], Z_of[3*LANES], H_of[9*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    X = take(3, w, X, X_in, t);
-    V = take(3, w, V, V_in, t);
-    dynamics_run(m, w, X, V, M_of, Z_of, H_of, t);
-    check(9, w, M_of, t->overflow);
-    check(3, w, Z_of, t->overflow);
-    check(9, w, H_of, t->overflow);
-    judge(t, w, code);
-    deliver(M_of, 9, w, code, M);
-    deliver(Z_of, 3, w, code, Z);
-    deliver(H_of, 9, w, code, H);
-}
-
 /* ---- M: 172 mul, 129 add, 4 div, 3 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], h_star_in_base_x[LANES],
@@ -2430,18 +2605,6 @@ INLINE void M_run(const prepared *m, size_t w, const real *X, real *M, verdict *
         }
     }
     M_after(m, w, s, M);
-}
-
-INLINE void M_any(const prepared *m, size_t w, const real *X, real *M, int *code)
-{
-    real X_in[3*LANES], M_of[9*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    X = take(3, w, X, X_in, t);
-    M_run(m, w, X, M_of, t);
-    check(9, w, M_of, t->overflow);
-    judge(t, w, code);
-    deliver(M_of, 9, w, code, M);
 }
 
 /* ---- Z: 226 mul, 149 add, 4 div, 3 sqrt, 0 trig, every leg counted ---- */
@@ -3009,19 +3172,6 @@ INLINE void Z_run(const prepared *m, size_t w, const real *X, const real *V, rea
     Z_after(w, s, Z);
 }
 
-INLINE void Z_any(const prepared *m, size_t w, const real *X, const real *V, real *Z, int *code)
-{
-    real X_in[3*LANES], V_in[3*LANES], Z_of[3*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    X = take(3, w, X, X_in, t);
-    V = take(3, w, V, V_in, t);
-    Z_run(m, w, X, V, Z_of, t);
-    check(3, w, Z_of, t->overflow);
-    judge(t, w, code);
-    deliver(Z_of, 3, w, code, Z);
-}
-
 /* ---- H: 92 mul, 51 add, 4 div, 3 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES];
@@ -3322,18 +3472,6 @@ INLINE void H_run(const prepared *m, size_t w, const real *X, real *H, verdict *
             H_place_prr(w, &results_prr, 0, H, t);
         }
     }
-}
-
-INLINE void H_any(const prepared *m, size_t w, const real *X, real *H, int *code)
-{
-    real X_in[3*LANES], H_of[9*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    X = take(3, w, X, X_in, t);
-    H_run(m, w, X, H_of, t);
-    check(9, w, H_of, t->overflow);
-    judge(t, w, code);
-    deliver(H_of, 9, w, code, H);
 }
 
 /* ---- required: 254 mul, 173 add, 4 div, 3 sqrt, 0 trig, every leg counted ---- */
@@ -4227,18 +4365,6 @@ INLINE void inverse_kinematics_run(const prepared *m, size_t w, const real *X, r
     }
 }
 
-INLINE void inverse_kinematics_any(const prepared *m, size_t w, const real *X, real *q, int *code)
-{
-    real X_in[3*LANES], q_of[6*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    X = take(3, w, X, X_in, t);
-    inverse_kinematics_run(m, w, X, q_of, t);
-    check(6, w, q_of, t->overflow);
-    judge(t, w, code);
-    deliver(q_of, 6, w, code, q);
-}
-
 /* ---- joint_rates: 98 mul, 57 add, 4 div, 3 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
@@ -4558,20 +4684,6 @@ INLINE void joint_rates_run(const prepared *m, size_t w, const real *X, const re
             joint_rates_place_prr(w, &results_prr, 0, qd, t);
         }
     }
-}
-
-INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *rates, int *code)
-{
-    real X_in[3*LANES], V_in[3*LANES], qd_of[6*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    X = take(3, w, X, X_in, t);
-    V = take(3, w, V, V_in, t);
-    joint_rates_run(m, w, X, V, qd_of, t);
-    check(6, w, qd_of, t->overflow);
-    judge(t, w, code);
-    deliver(qd_of, 6, w, code, rates);
 }
 
 /* ---- joint_accelerations: 148 mul, 86 add, 4 div, 3 sqrt, 0 trig, every leg counted ---- */
@@ -4982,21 +5094,6 @@ INLINE void joint_accelerations_run(const prepared *m, size_t w, const real *X, 
             joint_accelerations_place_prr(w, &results_prr, 0, qdd, t);
         }
     }
-}
-
-INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *accelerations, int *code)
-{
-    real X_in[3*LANES], V_in[3*LANES], A_in[3*LANES], qdd_of[6*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    X = take(3, w, X, X_in, t);
-    V = take(3, w, V, V_in, t);
-    A = take(3, w, A, A_in, t);
-    joint_accelerations_run(m, w, X, V, A, qdd_of, t);
-    check(6, w, qdd_of, t->overflow);
-    judge(t, w, code);
-    deliver(qdd_of, 6, w, code, accelerations);
 }
 
 /* ---- legs: 230 mul, 143 add, 4 div, 3 sqrt, 0 trig, every leg counted ---- */
@@ -6304,330 +6401,535 @@ INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, r
     condition_after(w, s, lengths);
 }
 
-/* ---- forces and accelerations ---- */
+/* ---- what users call, as steps over these ---- */
 
-INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, const real *V,
-        const real *A, const real *wrench, real *tau, int *code)
+INLINE void M_any(const prepared *m, size_t w, const real *X, real *M_out, int *code)
 {
-    static const size_t rows[] = {0, 1, 2};  /* on which drives act */
-    enum { N = 3, PADDED = 4 };
-    const size_t stride = w == 1 ? PADDED : N + 1;
-    real X_in[3*LANES], V_in[3*LANES], A_in[3*LANES], wrench_in[3*LANES];
-    real force[3*LANES], H[9*LANES], a[N*PADDED*LANES], x[N*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    X = take(3, w, X, X_in, t);
-    V = take(3, w, V, V_in, t);
-    A = take(3, w, A, A_in, t);
-    required_run(m, w, X, V, A, force, H, t);
-    if (wrench) {
-        add_wrench(take(3, w, wrench, wrench_in, t), -1, w, force);
-    }
-    for (size_t i = 0; i < N; ++i) {
-        for (size_t j = 0; j < stride; ++j) {
-            for (size_t k = 0; k < w; ++k) {
-                a[(i*stride + j)*w + k] = j < 3 ? H[(rows[i]*3 + j)*w + k]
-                    : j == N ? force[rows[i]*w + k] : 0;
-            }
-        }
-    }
-    solve(N, stride, w, a, x, t->singular);
-    check(N, w, x, t->overflow);
-    judge(t, w, code);
-    deliver(x, 3, w, code, tau);
+    real X_in[3*LANES], M[9*LANES];
+    verdict why;
+    start(w, &why);
+    X = side_by_side(3, w, X, X_in, why.invalid);
+    M_run(m, w, X, M, &why);
+    check(9, w, M, why.overflow);
+    judge(&why, w, code);
+    deliver(M, 9, w, code, M_out);
 }
 
-INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, const real *V,
-        const real *tau, const real *wrench, real *A, int *code)
+INLINE void Z_any(const prepared *m, size_t w, const real *X, const real *V, real *Z_out, int
+    *code)
 {
-    enum { N = 3, PADDED = 4 };
-    const size_t stride = w == 1 ? PADDED : N + 1;
-    real X_in[3*LANES], V_in[3*LANES], tau_in[3*LANES], wrench_in[3*LANES];
-    real M[9*LANES], Z[3*LANES], H[9*LANES];
-    real force[3*LANES], a[N*PADDED*LANES], x[N*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    X = take(3, w, X, X_in, t);
-    V = take(3, w, V, V_in, t);
-    tau = take(3, w, tau, tau_in, t);
-    dynamics_run(m, w, X, V, M, Z, H, t);
-    for (size_t i = 0; i < 3; ++i) {
-        for (size_t k = 0; k < w; ++k) {
-            real sum = -Z[i*w + k];
-            for (size_t j = 0; j < 3; ++j) {
-                sum += H[(i*3 + j)*w + k]*tau[j*w + k];
-            }
-            force[i*w + k] = sum;
-        }
-    }
-    if (wrench) {
-        add_wrench(take(3, w, wrench, wrench_in, t), 1, w, force);
-    }
-    memset(a, 0, N*stride*w*sizeof *a);
-    for (size_t i = 0; i < 3; ++i) {
-        for (size_t k = 0; k < w; ++k) {
-            for (size_t j = 0; j < 3; ++j) {
-                a[(i*stride + j)*w + k] = M[(i*3 + j)*w + k];
-            }
-            a[(i*stride + N)*w + k] = force[i*w + k];
-        }
-    }
-    solve(N, stride, w, a, x, t->singular);
-    check(N, w, x, t->overflow);
-    judge(t, w, code);
-    deliver(x, 3, w, code, A);
+    real X_in[3*LANES], V_in[3*LANES], Z[3*LANES];
+    verdict why;
+    start(w, &why);
+    X = side_by_side(3, w, X, X_in, why.invalid);
+    V = side_by_side(3, w, V, V_in, why.invalid);
+    Z_run(m, w, X, V, Z, &why);
+    check(3, w, Z, why.overflow);
+    judge(&why, w, code);
+    deliver(Z, 3, w, code, Z_out);
 }
 
-/* ---- what is made of other functions ---- */
-
-int planar_mixed_complete_acceleration(const prepared *m, const real *X, const real *V, const real *A,
-        const real *wrench, real *completed)
+INLINE void H_any(const prepared *m, size_t w, const real *X, real *H_out, int *code)
 {
-    const int code = all_finite(A, 3) ? PLANAR_MIXED_OK : PLANAR_MIXED_INVALID;
-    (void)m;
-    (void)X;
-    (void)V;
-    (void)wrench;
-    deliver(A, 3, 1, &code, completed);
-    return code;
+    real X_in[3*LANES], H[9*LANES];
+    verdict why;
+    start(w, &why);
+    X = side_by_side(3, w, X, X_in, why.invalid);
+    H_run(m, w, X, H, &why);
+    check(9, w, H, why.overflow);
+    judge(&why, w, code);
+    deliver(H, 9, w, code, H_out);
 }
 
-int planar_mixed_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
-        const real *wrench, real *forces)
+INLINE void inverse_kinematics_any(const prepared *m, size_t w, const real *X, real *q_out, int
+    *code)
 {
-    static const size_t driven[] = {0, 1, 2};  /* leg of each drive */
-    real leg_force[9], drive[9], tau[3];
-    verdict values, *const t = &values;
-    int code = planar_mixed_inverse_dynamics(m, X, V, A, wrench, tau);
-    if (code != PLANAR_MIXED_OK) {
-        refuse(9, forces);
-        return code;
-    }
-    start(1, t);
-    legs_run(m, 1, X, V, A, leg_force, drive, t);
-    for (size_t i = 0; i < 3; ++i) {
-        for (size_t e = 0; e < 3; ++e) {
-            leg_force[3*driven[i] + e] += tau[i]*drive[3*i + e];
-        }
-    }
-    check(9, 1, leg_force, t->overflow);
-    judge(t, 1, &code);
-    deliver(leg_force, 9, 1, &code, forces);
-    return code;
+    real X_in[3*LANES], q[6*LANES];
+    verdict why;
+    start(w, &why);
+    X = side_by_side(3, w, X, X_in, why.invalid);
+    inverse_kinematics_run(m, w, X, q, &why);
+    check(6, w, q, why.overflow);
+    judge(&why, w, code);
+    deliver(q, 6, w, code, q_out);
 }
 
-int planar_mixed_energy(const prepared *m, const real *X, const real *V, real *kinetic, real *potential)
+INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
+    *qd_out, int *code)
 {
-    real M[9], energies[2] = {0, 0};
-    verdict values, *const t = &values;
-    int code;
-    start(1, t);
-    check(3, 1, X, t->invalid);
-    check(3, 1, V, t->invalid);
-    M_run(m, 1, X, M, t);
-    potential_run(m, 1, X, energies + 1, t);
-    for (size_t i = 0; i < 3; ++i) {
-        for (size_t j = 0; j < 3; ++j) {
-            energies[0] += V[i]*M[i*3 + j]*V[j]/2;
-        }
-    }
-    check(2, 1, energies, t->overflow);
-    judge(t, 1, &code);
-    deliver(energies, 1, 1, &code, kinetic);
-    deliver(energies + 1, 1, 1, &code, potential);
-    return code;
+    real X_in[3*LANES], V_in[3*LANES], qd[6*LANES];
+    verdict why;
+    start(w, &why);
+    X = side_by_side(3, w, X, X_in, why.invalid);
+    V = side_by_side(3, w, V, V_in, why.invalid);
+    joint_rates_run(m, w, X, V, qd, &why);
+    check(6, w, qd, why.overflow);
+    judge(&why, w, code);
+    deliver(qd, 6, w, code, qd_out);
 }
 
-/* Largest residual of the driven joints at X, turns modulo 2 pi; nothing
-   where X is impossible. */
-static int mismatch(const prepared *m, const real *q_actuated, const real *X, real *gap, real *size)
+INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
+    const real *A, real *qdd_out, int *code)
 {
-    static const size_t driven[] = {1, 2, 4};
-    real q[6];
-    int code = planar_mixed_inverse_kinematics(m, X, q);
-    if (code != PLANAR_MIXED_OK) {
-        return code;
+    real X_in[3*LANES], V_in[3*LANES], A_in[3*LANES], qdd[6*LANES];
+    verdict why;
+    start(w, &why);
+    X = side_by_side(3, w, X, X_in, why.invalid);
+    V = side_by_side(3, w, V, V_in, why.invalid);
+    A = side_by_side(3, w, A, A_in, why.invalid);
+    joint_accelerations_run(m, w, X, V, A, qdd, &why);
+    check(6, w, qdd, why.overflow);
+    judge(&why, w, code);
+    deliver(qdd, 6, w, code, qdd_out);
+}
+
+INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real *V, real *M_out,
+    real *Z_out, real *H_out, int *code)
+{
+    real X_in[3*LANES], V_in[3*LANES], M[9*LANES], Z[3*LANES], H[9*LANES];
+    verdict why;
+    start(w, &why);
+    X = side_by_side(3, w, X, X_in, why.invalid);
+    V = side_by_side(3, w, V, V_in, why.invalid);
+    dynamics_run(m, w, X, V, M, Z, H, &why);
+    check(9, w, M, why.overflow);
+    check(3, w, Z, why.overflow);
+    check(9, w, H, why.overflow);
+    judge(&why, w, code);
+    deliver(M, 9, w, code, M_out);
+    deliver(Z, 3, w, code, Z_out);
+    deliver(H, 9, w, code, H_out);
+}
+
+INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, const real *V, const
+    real *A, const real *wrench, real *tau_out, int *code)
+{
+    real X_in[3*LANES], V_in[3*LANES], A_in[3*LANES], wrench_in[3*LANES], required[3*LANES],
+        H[9*LANES], subtract_2[3*LANES], tau[3*LANES], work[12*LANES];
+    verdict why;
+    start(w, &why);
+    X = side_by_side(3, w, X, X_in, why.invalid);
+    V = side_by_side(3, w, V, V_in, why.invalid);
+    A = side_by_side(3, w, A, A_in, why.invalid);
+    wrench = optional(3, w, wrench, 0, wrench_in, why.invalid);
+    required_run(m, w, X, V, A, required, H, &why);
+    const real *const extend_1 = wrench;
+    for (size_t i = 0; i < 3*w; ++i) {
+        subtract_2[i] = required[i] - extend_1[i];
     }
+    set_matrix(3, w, H, work);
+    solve(3, w, subtract_2, work, tau, why.singular);
+    check(3, w, tau, why.overflow);
+    judge(&why, w, code);
+    deliver(tau, 3, w, code, tau_out);
+}
+
+INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, const real *V, const
+    real *tau, const real *wrench, real *A_out, int *code)
+{
+    real X_in[3*LANES], V_in[3*LANES], tau_in[3*LANES], wrench_in[3*LANES], M[9*LANES], Z[3*LANES],
+        H[9*LANES], times_1[3*LANES] = {0}, add_3[3*LANES], subtract_4[3*LANES], A[3*LANES],
+        work[12*LANES];
+    verdict why;
+    start(w, &why);
+    X = side_by_side(3, w, X, X_in, why.invalid);
+    V = side_by_side(3, w, V, V_in, why.invalid);
+    tau = side_by_side(3, w, tau, tau_in, why.invalid);
+    wrench = optional(3, w, wrench, 0, wrench_in, why.invalid);
+    dynamics_run(m, w, X, V, M, Z, H, &why);
+    product(3, 3, 1, w, H, tau, times_1);
+    const real *const extend_2 = wrench;
+    for (size_t i = 0; i < 3*w; ++i) {
+        add_3[i] = times_1[i] + extend_2[i];
+    }
+    for (size_t i = 0; i < 3*w; ++i) {
+        subtract_4[i] = add_3[i] - Z[i];
+    }
+    set_matrix(3, w, M, work);
+    solve(3, w, subtract_4, work, A, why.singular);
+    check(3, w, A, why.overflow);
+    judge(&why, w, code);
+    deliver(A, 3, w, code, A_out);
+}
+
+INLINE void complete_acceleration_any(const real *A, real *completed_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(3, 1, A, why.invalid);
+    const real *const completed = A;
+    check(3, 1, completed, why.overflow);
+    judge(&why, 1, code);
+    deliver(completed, 3, 1, code, completed_out);
+}
+
+INLINE void leg_reactions_any(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *forces_out, int *code)
+{
+    static const size_t places_0[] = {0, 1, 2};
+    real wrench_in[3], required[3] = {0}, H[9] = {0}, subtract_2[3] = {0}, solve_3[3] = {0},
+        leg_force[9] = {0}, drive[9] = {0}, forces[9] = {0}, work[12];
+    verdict why;
+    start(1, &why);
+    check(3, 1, X, why.invalid);
+    check(3, 1, V, why.invalid);
+    check(3, 1, A, why.invalid);
+    wrench = optional(3, 1, wrench, 0, wrench_in, why.invalid);
+    required_run(m, 1, X, V, A, required, H, &why);
+    const real *const extend_1 = wrench;
     for (size_t i = 0; i < 3; ++i) {
-        gap[i] = q_actuated[i] - q[driven[i]];
+        subtract_2[i] = required[i] - extend_1[i];
     }
-    static const size_t turning[] = {1};
+    set_matrix(3, 1, H, work);
+    solve_state(3, subtract_2, work, solve_3, why.singular);
+    legs_run(m, 1, X, V, A, leg_force, drive, &why);
+    for (size_t i = 0; i < 9; ++i) {
+        forces[i] = leg_force[i];
+    }
+    add_forces(3, 3, 1, places_0, solve_3, drive, forces);
+    check(9, 1, forces, why.overflow);
+    judge(&why, 1, code);
+    deliver(forces, 9, 1, code, forces_out);
+}
+
+INLINE void energy_any(const prepared *m, const real *X, const real *V, real *kinetic_out, real
+    *potential_out, int *code)
+{
+    real M[9] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(3, 1, X, why.invalid);
+    check(3, 1, V, why.invalid);
+    M_run(m, 1, X, M, &why);
+    potential_run(m, 1, X, potential_of_potential, &why);
+    half_form(3, 1, V, M, kinetic);
+    const real *const potential = potential_of_potential;
+    check(1, 1, kinetic, why.overflow);
+    check(1, 1, potential, why.overflow);
+    judge(&why, 1, code);
+    deliver(kinetic, 1, 1, code, kinetic_out);
+    deliver(potential, 1, 1, code, potential_out);
+}
+
+INLINE void condition_any(const prepared *m, const real *X, const real *length, real *sigma_out,
+    real *legs_out, int *code)
+{
+    static const size_t places_0[] = {2};
+    real length_in[1], H[9] = {0}, lengths[2] = {0}, legs[3] = {0}, reach[3] = {0}, choose_length_1[1]
+        = {0}, divide_rows_2[9] = {0}, sigma[3] = {0};
+    verdict why;
+    start(1, &why);
+    check(3, 1, X, why.invalid);
+    require_positive(1, 1, length, why.invalid);
+    length = optional(1, 1, length, 0, length_in, why.invalid);
+    condition_run(m, 1, X, H, lengths, legs, reach, &why);
     for (size_t i = 0; i < 1; ++i) {
-        const real turn = 2*R(3.14159265358979323846264338327950288L);
-        gap[turning[i]] -= turn*whole(gap[turning[i]]/turn + R(0.5));
+        choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
+            lengths[i] : lengths[1 + i];
     }
-    *size = largest(gap, 3);
-    return code;
+    for (size_t i = 0; i < 9; ++i) {
+        divide_rows_2[i] = H[i];
+    }
+    divide_rows(1, 3, 1, places_0, choose_length_1, divide_rows_2);
+    singular_values(3, 3, divide_rows_2, sigma);
+    check(3, 1, sigma, why.overflow);
+    check(3, 1, legs, why.overflow);
+    judge(&why, 1, code);
+    deliver(sigma, 3, 1, code, sigma_out);
+    deliver(legs, 3, 1, code, legs_out);
 }
 
-/* Step that closes the gap: the shortest with [H]^T step = gap. */
-static int close_gap(const prepared *m, const real *X, const real *gap, real *step)
+static void mismatch_any(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
+    int *code)
 {
-    real a[BIG*(BIG + 1)], H[9];
-    int code = planar_mixed_H(m, X, H);
-    if (code == PLANAR_MIXED_OK) {
-        fill_rows(3, H, gap, a);
-        least_squares(3, 3, a, step);
+    static const size_t places_0[] = {1, 2, 4};
+    static const size_t places_1[] = {1};
+    real q[6] = {0}, take_1[3] = {0}, subtract_2[3] = {0}, gap[3] = {0};
+    verdict why;
+    start(1, &why);
+    check(3, 1, X, why.invalid);
+    check(3, 1, q_actuated, why.invalid);
+    inverse_kinematics_run(m, 1, X, q, &why);
+    take(3, 1, places_0, q, take_1);
+    for (size_t i = 0; i < 3; ++i) {
+        subtract_2[i] = q_actuated[i] - take_1[i];
     }
-    return code;
+    for (size_t i = 0; i < 3; ++i) {
+        gap[i] = subtract_2[i];
+    }
+    wrap_turns(1, 1, places_1, gap);
+    check(3, 1, gap, why.overflow);
+    judge(&why, 1, code);
+    deliver(gap, 3, 1, code, gap_out);
 }
 
-int planar_mixed_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0, real *X)
+static void slope_any(const prepared *m, const real *X, real *slope_out, int *code)
 {
-    enum { GAPS = 3 };
-    real found[3], gap[GAPS] = {0}, trial[3] = {0}, next[GAPS] = {0}, step[3] = {0};
-    real size = 0, next_size = 0;
-    int code = all_finite(q_actuated, 3) ? mismatch(m, q_actuated, X0, gap, &size)
-        : PLANAR_MIXED_INVALID;
-    memcpy(found, X0, sizeof found);
-    for (int n = 0; n < 50 && code == PLANAR_MIXED_OK && size > CLOSED; ++n) {
-        int better = 0;
+    real slope[9] = {0};
+    verdict why;
+    start(1, &why);
+    check(3, 1, X, why.invalid);
+    H_run(m, 1, X, slope, &why);
+    check(9, 1, slope, why.overflow);
+    judge(&why, 1, code);
+    deliver(slope, 9, 1, code, slope_out);
+}
+
+/* The pose at which the residual vanishes, by Gauss-Newton from a start. */
+static int search_mismatch(const prepared *m, const real *q_actuated, const real *start, real *found)
+{
+    enum { N = 3, NV = 3, TRIALS = 12 };
+    real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
+    real trial[3] = {0}, size = 0;
+    int code;
+    memcpy(found, start, sizeof trial);
+    mismatch_any(m, found, q_actuated, gap, &code);
+    size = largest(gap, N);
+    for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
+        int better = 0, tried = OK;
         real part = 1;
-        code = close_gap(m, found, gap, step);
-        for (int halving = 0; halving < 12 && code == PLANAR_MIXED_OK && !better; ++halving) {
+        slope_any(m, found, slope, &code);
+        if (code != OK) {
+            break;
+        }
+        for (size_t i = 0; i < N; ++i) {
+            for (size_t j = 0; j < NV; ++j) {
+                a[i*(NV + 1) + j] = slope[j*N + i];
+            }
+            a[i*(NV + 1) + NV] = gap[i];
+        }
+        least_squares(N, NV, a, step);
+        for (int halving = 0; halving < TRIALS && !better; ++halving, part /= 2) {
             moved(found, step, part, trial);
-            better = mismatch(m, q_actuated, trial, next, &next_size) == PLANAR_MIXED_OK
-                && next_size < size;
-            part /= 2;
+            mismatch_any(m, trial, q_actuated, next, &tried);
+            better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
             break;
         }
-        memcpy(found, trial, sizeof found);
+        memcpy(found, trial, sizeof trial);
         memcpy(gap, next, sizeof gap);
-        size = next_size;
-    }
-    if (code == PLANAR_MIXED_OK && !(size < CONVERGED)) {
-        code = PLANAR_MIXED_NOT_CONVERGED;
-    }
-    deliver(found, 3, 1, &code, X);
-    return code;
-}
-
-/* ---- conditioning ---- */
-
-/* Turn columns p and q of a[rows][columns] until they are perpendicular; returns whether they were
-   not, to rounding. */
-static int turn_columns(size_t rows, size_t columns, size_t p, size_t q, real *a)
-{
-    real pp = 0, qq = 0, pq = 0;
-    for (size_t i = 0; i < rows; ++i) {
-        pp += a[i*columns + p]*a[i*columns + p];
-        qq += a[i*columns + q]*a[i*columns + q];
-        pq += a[i*columns + p]*a[i*columns + q];
-    }
-    if (!(magnitude(pq) > ROUNDING*root(pp)*root(qq))) {
-        return 0;
-    }
-    const real cotangent = (qq - pp)/(2*pq), size = magnitude(cotangent);
-    const real t = (cotangent < 0 ? -1 : 1)/(size + root(1 + size*size));
-    const real c = 1/root(1 + t*t), s = c*t;
-    for (size_t i = 0; i < rows; ++i) {
-        const real x = a[i*columns + p], y = a[i*columns + q];
-        a[i*columns + p] = c*x - s*y;
-        a[i*columns + q] = s*x + c*y;
-    }
-    return 1;
-}
-
-/* Singular values of a[rows][columns], rows >= columns, in descending order, by one-sided Jacobi
-   rotations; a is overwritten. */
-static void singular_values(size_t rows, size_t columns, real *a, real *sigma)
-{
-    const real size = largest(a, rows*columns);
-    for (size_t i = 0; i < rows*columns && size > 0; ++i) {
-        a[i] /= size;
-    }
-    for (int sweep = 0, turned = 1; sweep < 40 && turned; ++sweep) {
-        turned = 0;
-        for (size_t p = 0; p < columns; ++p) {
-            for (size_t q = p + 1; q < columns; ++q) {
-                turned |= turn_columns(rows, columns, p, q, a);
-            }
+        size = largest(gap, N);
+        code = tried;
+        if (TRIALS == 1 && !(largest(step, NV) > CLOSED/10)) {
+            break;
         }
     }
-    for (size_t j = 0; j < columns; ++j) {
-        real sum = 0;
-        for (size_t i = 0; i < rows; ++i) {
-            sum += a[i*columns + j]*a[i*columns + j];
-        }
-        const real value = size*root(sum);
-        size_t place = j;
-        for (; place > 0 && sigma[place - 1] < value; --place) {
-            sigma[place] = sigma[place - 1];
-        }
-        sigma[place] = value;
-    }
+    return code == OK && !(size < CONVERGED) ? NOT_CONVERGED : code;
 }
 
-/* H and Hk with moment rows divided by the length, and the margins of the legs. */
-static int matrices(const prepared *m, const real *X, real *H, real *pivots)
+
+INLINE void forward_kinematics_any(const prepared *m, const real *q_actuated, const real *X0, real
+    *X_out, int *code)
 {
-    static const size_t moments[] = {2};
-    real lengths[2], reach[3];
-    verdict values, *const t = &values;
-    int code;
-    start(1, t);
-    check(3, 1, X, t->invalid);
-    condition_run(m, 1, X, H, lengths, pivots, reach, t);
-    const real length = lengths[0] > R(1e-9)*lengths[1] ? lengths[0] : lengths[1];
-    for (size_t i = 0; i < 1; ++i) {
-        for (size_t j = 0; j < 3; ++j) {
-            H[moments[i]*3 + j] /= length;
-        }
-    }
-    check(9, 1, H, t->overflow);
-    check(3, 1, pivots, t->overflow);
-    judge(t, 1, &code);
-    return code;
+    real X[3] = {0};
+    verdict why;
+    start(1, &why);
+    check(3, 1, q_actuated, why.invalid);
+    check(3, 1, X0, why.invalid);
+    blame(search_mismatch(m, q_actuated, X0, X), &why);
+    check(3, 1, X, why.overflow);
+    judge(&why, 1, code);
+    deliver(X, 3, 1, code, X_out);
 }
 
-int planar_mixed_condition(const prepared *m, const real *X, real *sigma, real *legs)
+INLINE void dissipation_any(const real *V, real *dissipation_out, int *code)
 {
-    real H[9], a[9], found[3] = {0}, pivots[3];
-    const int code = matrices(m, X, H, pivots);
-    if (code != PLANAR_MIXED_OK) {
-        refuse(3, sigma);
-        refuse(3, legs);
-        return code;
+    real subtract_1[3] = {0};
+    verdict why;
+    start(1, &why);
+    check(3, 1, V, why.invalid);
+    for (size_t i = 0; i < 3; ++i) {
+        subtract_1[i] = V[i] - V[i];
+    }
+    const real *const dissipation = subtract_1;
+    check(1, 1, dissipation, why.overflow);
+    judge(&why, 1, code);
+    deliver(dissipation, 1, 1, code, dissipation_out);
+}
+
+INLINE void momentum_any(const prepared *m, size_t w, const real *X, const real *V, real
+    *momentum_out, int *code)
+{
+    real X_in[3*LANES], V_in[3*LANES], M[9*LANES], momentum[3*LANES] = {0};
+    verdict why;
+    start(w, &why);
+    X = side_by_side(3, w, X, X_in, why.invalid);
+    V = side_by_side(3, w, V, V_in, why.invalid);
+    M_run(m, w, X, M, &why);
+    product(3, 3, 1, w, M, V, momentum);
+    check(3, w, momentum, why.overflow);
+    judge(&why, w, code);
+    deliver(momentum, 3, w, code, momentum_out);
+}
+
+INLINE void actuator_positions_any(const prepared *m, size_t w, const real *X, real *q_out, int
+    *code)
+{
+    static const size_t places_0[] = {1, 2, 4};
+    real X_in[3*LANES], q_of_inverse_kinematics[6*LANES], q[3*LANES] = {0};
+    verdict why;
+    start(w, &why);
+    X = side_by_side(3, w, X, X_in, why.invalid);
+    inverse_kinematics_run(m, w, X, q_of_inverse_kinematics, &why);
+    take(3, 1*w, places_0, q_of_inverse_kinematics, q);
+    check(3, w, q, why.overflow);
+    judge(&why, w, code);
+    deliver(q, 3, w, code, q_out);
+}
+
+INLINE void actuator_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
+    *qd_out, int *code)
+{
+    static const size_t places_0[] = {1, 2, 4};
+    real X_in[3*LANES], V_in[3*LANES], qd_of_joint_rates[6*LANES], qd[3*LANES] = {0};
+    verdict why;
+    start(w, &why);
+    X = side_by_side(3, w, X, X_in, why.invalid);
+    V = side_by_side(3, w, V, V_in, why.invalid);
+    joint_rates_run(m, w, X, V, qd_of_joint_rates, &why);
+    take(3, 1*w, places_0, qd_of_joint_rates, qd);
+    check(3, w, qd, why.overflow);
+    judge(&why, w, code);
+    deliver(qd, 3, w, code, qd_out);
+}
+
+INLINE void actuator_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
+    const real *A, real *qdd_out, int *code)
+{
+    static const size_t places_0[] = {1, 2, 4};
+    real X_in[3*LANES], V_in[3*LANES], A_in[3*LANES], qdd_of_joint_accelerations[6*LANES],
+        qdd[3*LANES] = {0};
+    verdict why;
+    start(w, &why);
+    X = side_by_side(3, w, X, X_in, why.invalid);
+    V = side_by_side(3, w, V, V_in, why.invalid);
+    A = side_by_side(3, w, A, A_in, why.invalid);
+    joint_accelerations_run(m, w, X, V, A, qdd_of_joint_accelerations, &why);
+    take(3, 1*w, places_0, qdd_of_joint_accelerations, qdd);
+    check(3, w, qdd, why.overflow);
+    judge(&why, w, code);
+    deliver(qdd, 3, w, code, qdd_out);
+}
+
+INLINE void power_any(const prepared *m, size_t w, const real *X, const real *V, const real *tau,
+    real *power_out, int *code)
+{
+    real X_in[3*LANES], V_in[3*LANES], tau_in[3*LANES], H[9*LANES], times_1[3*LANES] = {0},
+        power[1*LANES] = {0};
+    verdict why;
+    start(w, &why);
+    X = side_by_side(3, w, X, X_in, why.invalid);
+    V = side_by_side(3, w, V, V_in, why.invalid);
+    tau = side_by_side(3, w, tau, tau_in, why.invalid);
+    H_run(m, w, X, H, &why);
+    product(3, 3, 1, w, H, tau, times_1);
+    inner(3, w, times_1, V, power);
+    check(1, w, power, why.overflow);
+    judge(&why, w, code);
+    deliver(power, 1, w, code, power_out);
+}
+
+INLINE void rotation_any(const real *X, real *R_out, int *code)
+{
+    real R[4] = {0};
+    verdict why;
+    start(1, &why);
+    check(3, 1, X, why.invalid);
+    const real *const take_1 = X + 2;
+    rotation_of_angle(take_1, R);
+    check(4, 1, R, why.overflow);
+    judge(&why, 1, code);
+    deliver(R, 4, 1, code, R_out);
+}
+
+INLINE void pose_any(const real *t, const real *R, real *X_out, int *code)
+{
+    real angle_of_rotation_1[1] = {0}, join_2[3] = {0};
+    verdict why;
+    start(1, &why);
+    check(2, 1, t, why.invalid);
+    check(4, 1, R, why.invalid);
+    angle_of_rotation(R, angle_of_rotation_1);
+    beside(1, 2, 1, t, angle_of_rotation_1, join_2);
+    const real *const X = join_2;
+    check(3, 1, X, why.overflow);
+    judge(&why, 1, code);
+    deliver(X, 3, 1, code, X_out);
+}
+
+INLINE void X_dot_any(const real *X, const real *V, real *X_dot_out, int *code)
+{
+    verdict why;
+    start(1, &why);
+    check(3, 1, X, why.invalid);
+    check(3, 1, V, why.invalid);
+    const real *const X_dot = V;
+    check(3, 1, X_dot, why.overflow);
+    judge(&why, 1, code);
+    deliver(X_dot, 3, 1, code, X_dot_out);
+}
+
+INLINE void retract_any(const real *X, const real *step, real *X_moved_out, int *code)
+{
+    real X_moved[3] = {0};
+    verdict why;
+    start(1, &why);
+    check(3, 1, X, why.invalid);
+    check(3, 1, step, why.invalid);
+    for (size_t i = 0; i < 3; ++i) {
+        X_moved[i] = X[i] + step[i];
+    }
+    check(3, 1, X_moved, why.overflow);
+    judge(&why, 1, code);
+    deliver(X_moved, 3, 1, code, X_moved_out);
+}
+
+INLINE void difference_any(const real *X0, const real *X1, real *step_out, int *code)
+{
+    static const size_t places_0[] = {2};
+    real subtract_1[3] = {0}, step[3] = {0};
+    verdict why;
+    start(1, &why);
+    check(3, 1, X0, why.invalid);
+    check(3, 1, X1, why.invalid);
+    for (size_t i = 0; i < 3; ++i) {
+        subtract_1[i] = X1[i] - X0[i];
     }
     for (size_t i = 0; i < 3; ++i) {
-        for (size_t j = 0; j < 3; ++j) {
-            a[i*3 + j] = H[i*3 + j];
-        }
+        step[i] = subtract_1[i];
     }
-    singular_values(3, 3, a, found);
-    memcpy(sigma, found, sizeof found);
-    memcpy(legs, pivots, sizeof pivots);
-    return code;
+    wrap_turns(1, 1, places_0, step);
+    check(3, 1, step, why.overflow);
+    judge(&why, 1, code);
+    deliver(step, 3, 1, code, step_out);
 }
 
-int planar_mixed_rotation(const real *X, real *R)
+INLINE void interpolate_any(const real *X0, const real *X1, const real *s, real *X_out, int *code)
 {
-    const int code = all_finite(X, 3) ? PLANAR_MIXED_OK : PLANAR_MIXED_INVALID;
-    const real c = cosine(X[2]), s = sine(X[2]), rows[4] = {c, -s, s, c};
-    deliver(rows, 4, 1, &code, R);
-    return code;
-}
-
-int planar_mixed_pose(const real *t, const real *R, real *X)
-{
-    real found[3] = {0};
-    found[0] = t[0];
-    found[1] = t[1];
-    found[2] = angle(R[2], R[0]);
-    const int turns = magnitude(R[0]*R[0] + R[1]*R[1] - 1) <= ROUNDED && magnitude(R[2]*R[2] + R[3]*R[3] - 1) <= ROUNDED
-        && magnitude(R[0]*R[2] + R[1]*R[3]) <= ROUNDED && R[0]*R[3] - R[1]*R[2] > 0;
-    const int code = turns && all_finite(found, 3) ? PLANAR_MIXED_OK : PLANAR_MIXED_INVALID;
-    deliver(found, 3, 1, &code, X);
-    return code;
-}
-
-int planar_mixed_X_dot(const real *X, const real *V, real *X_dot)
-{
-    const int code = all_finite(X, 3) && all_finite(V, 3) ? PLANAR_MIXED_OK : PLANAR_MIXED_INVALID;
-    deliver(V, 3, 1, &code, X_dot);
-    return code;
+    static const size_t places_0[] = {2};
+    real subtract_1[3] = {0}, wrap_turns_2[3] = {0}, scale_3[3] = {0}, X[3] = {0};
+    verdict why;
+    start(1, &why);
+    check(3, 1, X0, why.invalid);
+    check(3, 1, X1, why.invalid);
+    check(1, 1, s, why.invalid);
+    for (size_t i = 0; i < 3; ++i) {
+        subtract_1[i] = X1[i] - X0[i];
+    }
+    for (size_t i = 0; i < 3; ++i) {
+        wrap_turns_2[i] = subtract_1[i];
+    }
+    wrap_turns(1, 1, places_0, wrap_turns_2);
+    for (size_t i = 0; i < 3; ++i) {
+        scale_3[i] = wrap_turns_2[i]*s[i%(1)];
+    }
+    for (size_t i = 0; i < 3; ++i) {
+        X[i] = X0[i] + scale_3[i];
+    }
+    check(3, 1, X, why.overflow);
+    judge(&why, 1, code);
+    deliver(X, 3, 1, code, X_out);
 }
 
 /* ---- one state, and batches ---- */
@@ -6648,7 +6950,7 @@ size_t planar_mixed_M_batch(const planar_mixed_model *model, size_t n, const pla
         int codes[LANES];
         M_any(model, LANES, X + 3*i, M + 9*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
-            if (codes[k] != PLANAR_MIXED_OK) {
+            if (codes[k] != OK) {
                 codes[k] = planar_mixed_M(model, X + 3*(i + k), M + 9*(i + k));
             }
         }
@@ -6677,7 +6979,7 @@ size_t planar_mixed_Z_batch(const planar_mixed_model *model, size_t n, const pla
         int codes[LANES];
         Z_any(model, LANES, X + 3*i, V + 3*i, Z + 3*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
-            if (codes[k] != PLANAR_MIXED_OK) {
+            if (codes[k] != OK) {
                 codes[k] = planar_mixed_Z(model, X + 3*(i + k), V + 3*(i + k), Z + 3*(i + k));
             }
         }
@@ -6706,7 +7008,7 @@ size_t planar_mixed_H_batch(const planar_mixed_model *model, size_t n, const pla
         int codes[LANES];
         H_any(model, LANES, X + 3*i, H + 9*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
-            if (codes[k] != PLANAR_MIXED_OK) {
+            if (codes[k] != OK) {
                 codes[k] = planar_mixed_H(model, X + 3*(i + k), H + 9*(i + k));
             }
         }
@@ -6714,37 +7016,6 @@ size_t planar_mixed_H_batch(const planar_mixed_model *model, size_t n, const pla
     }
     for (; i < n; ++i) {
         const int code = planar_mixed_H(model, X + 3*i, H + 9*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int planar_mixed_dynamics(const planar_mixed_model *model, const planar_mixed_real *X, const
-    planar_mixed_real *V, planar_mixed_real *M, planar_mixed_real *Z, planar_mixed_real *H)
-{
-    int code;
-    dynamics_any(model, 1, X, V, M, Z, H, &code);
-    return code;
-}
-
-size_t planar_mixed_dynamics_batch(const planar_mixed_model *model, size_t n, const
-    planar_mixed_real *X, const planar_mixed_real *V, planar_mixed_real *M, planar_mixed_real *Z,
-    planar_mixed_real *H, int *status)
-{
-    size_t failed = 0, i = 0;
-    for (; i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        dynamics_any(model, LANES, X + 3*i, V + 3*i, M + 9*i, Z + 3*i, H + 9*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
-            if (codes[k] != PLANAR_MIXED_OK) {
-                codes[k] = planar_mixed_dynamics(model, X + 3*(i + k), V + 3*(i + k), M + 9*(i + k), Z + 3*(i +
-                    k), H + 9*(i + k));
-            }
-        }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = planar_mixed_dynamics(model, X + 3*i, V + 3*i, M + 9*i, Z + 3*i, H + 9*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6766,7 +7037,7 @@ size_t planar_mixed_inverse_kinematics_batch(const planar_mixed_model *model, si
         int codes[LANES];
         inverse_kinematics_any(model, LANES, X + 3*i, q + 6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
-            if (codes[k] != PLANAR_MIXED_OK) {
+            if (codes[k] != OK) {
                 codes[k] = planar_mixed_inverse_kinematics(model, X + 3*(i + k), q + 6*(i + k));
             }
         }
@@ -6795,7 +7066,7 @@ size_t planar_mixed_joint_rates_batch(const planar_mixed_model *model, size_t n,
         int codes[LANES];
         joint_rates_any(model, LANES, X + 3*i, V + 3*i, rates + 6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
-            if (codes[k] != PLANAR_MIXED_OK) {
+            if (codes[k] != OK) {
                 codes[k] = planar_mixed_joint_rates(model, X + 3*(i + k), V + 3*(i + k), rates + 6*(i + k));
             }
         }
@@ -6825,7 +7096,7 @@ size_t planar_mixed_joint_accelerations_batch(const planar_mixed_model *model, s
         int codes[LANES];
         joint_accelerations_any(model, LANES, X + 3*i, V + 3*i, A + 3*i, accelerations + 6*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
-            if (codes[k] != PLANAR_MIXED_OK) {
+            if (codes[k] != OK) {
                 codes[k] = planar_mixed_joint_accelerations(model, X + 3*(i + k), V + 3*(i + k), A + 3*(i + k),
                     accelerations + 6*(i + k));
             }
@@ -6835,6 +7106,37 @@ size_t planar_mixed_joint_accelerations_batch(const planar_mixed_model *model, s
     for (; i < n; ++i) {
         const int code = planar_mixed_joint_accelerations(model, X + 3*i, V + 3*i, A + 3*i, accelerations
             + 6*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int planar_mixed_dynamics(const planar_mixed_model *model, const planar_mixed_real *X, const
+    planar_mixed_real *V, planar_mixed_real *M, planar_mixed_real *Z, planar_mixed_real *H)
+{
+    int code;
+    dynamics_any(model, 1, X, V, M, Z, H, &code);
+    return code;
+}
+
+size_t planar_mixed_dynamics_batch(const planar_mixed_model *model, size_t n, const
+    planar_mixed_real *X, const planar_mixed_real *V, planar_mixed_real *M, planar_mixed_real *Z,
+    planar_mixed_real *H, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        dynamics_any(model, LANES, X + 3*i, V + 3*i, M + 9*i, Z + 3*i, H + 9*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = planar_mixed_dynamics(model, X + 3*(i + k), V + 3*(i + k), M + 9*(i + k), Z + 3*(i +
+                    k), H + 9*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = planar_mixed_dynamics(model, X + 3*i, V + 3*i, M + 9*i, Z + 3*i, H + 9*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6859,7 +7161,7 @@ size_t planar_mixed_inverse_dynamics_batch(const planar_mixed_model *model, size
         inverse_dynamics_any(model, LANES, X + 3*i, V + 3*i, A + 3*i, wrench ? wrench + 3*i : NULL, tau +
             3*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
-            if (codes[k] != PLANAR_MIXED_OK) {
+            if (codes[k] != OK) {
                 codes[k] = planar_mixed_inverse_dynamics(model, X + 3*(i + k), V + 3*(i + k), A + 3*(i + k),
                     wrench ? wrench + 3*(i + k) : NULL, tau + 3*(i + k));
             }
@@ -6893,7 +7195,7 @@ size_t planar_mixed_forward_dynamics_batch(const planar_mixed_model *model, size
         forward_dynamics_any(model, LANES, X + 3*i, V + 3*i, tau + 3*i, wrench ? wrench + 3*i : NULL, A +
             3*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
-            if (codes[k] != PLANAR_MIXED_OK) {
+            if (codes[k] != OK) {
                 codes[k] = planar_mixed_forward_dynamics(model, X + 3*(i + k), V + 3*(i + k), tau + 3*(i + k),
                     wrench ? wrench + 3*(i + k) : NULL, A + 3*(i + k));
             }
@@ -6908,12 +7210,25 @@ size_t planar_mixed_forward_dynamics_batch(const planar_mixed_model *model, size
     return failed;
 }
 
+int planar_mixed_complete_acceleration(const planar_mixed_model *model, const planar_mixed_real
+    *X, const planar_mixed_real *V, const planar_mixed_real *A, const planar_mixed_real *wrench,
+    planar_mixed_real *completed)
+{
+    int code;
+    (void)model;
+    (void)X;
+    (void)V;
+    (void)wrench;
+    complete_acceleration_any(A, completed, &code);
+    return code;
+}
+
 size_t planar_mixed_complete_acceleration_batch(const planar_mixed_model *model, size_t n, const
     planar_mixed_real *X, const planar_mixed_real *V, const planar_mixed_real *A, const
     planar_mixed_real *wrench, planar_mixed_real *completed, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
+    size_t failed = 0, i = 0;
+    for (; i < n; ++i) {
         const int code = planar_mixed_complete_acceleration(model, X + 3*i, V + 3*i, A + 3*i, wrench ?
             wrench + 3*i : NULL, completed + 3*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -6921,12 +7236,21 @@ size_t planar_mixed_complete_acceleration_batch(const planar_mixed_model *model,
     return failed;
 }
 
+int planar_mixed_leg_reactions(const planar_mixed_model *model, const planar_mixed_real *X, const
+    planar_mixed_real *V, const planar_mixed_real *A, const planar_mixed_real *wrench,
+    planar_mixed_real *forces)
+{
+    int code;
+    leg_reactions_any(model, X, V, A, wrench, forces, &code);
+    return code;
+}
+
 size_t planar_mixed_leg_reactions_batch(const planar_mixed_model *model, size_t n, const
     planar_mixed_real *X, const planar_mixed_real *V, const planar_mixed_real *A, const
     planar_mixed_real *wrench, planar_mixed_real *forces, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
+    size_t failed = 0, i = 0;
+    for (; i < n; ++i) {
         const int code = planar_mixed_leg_reactions(model, X + 3*i, V + 3*i, A + 3*i, wrench ? wrench +
             3*i : NULL, forces + 9*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -6934,68 +7258,343 @@ size_t planar_mixed_leg_reactions_batch(const planar_mixed_model *model, size_t 
     return failed;
 }
 
+int planar_mixed_energy(const planar_mixed_model *model, const planar_mixed_real *X, const
+    planar_mixed_real *V, planar_mixed_real *kinetic, planar_mixed_real *potential)
+{
+    int code;
+    energy_any(model, X, V, kinetic, potential, &code);
+    return code;
+}
+
 size_t planar_mixed_energy_batch(const planar_mixed_model *model, size_t n, const
     planar_mixed_real *X, const planar_mixed_real *V, planar_mixed_real *kinetic,
     planar_mixed_real *potential, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
+    size_t failed = 0, i = 0;
+    for (; i < n; ++i) {
         const int code = planar_mixed_energy(model, X + 3*i, V + 3*i, kinetic + 1*i, potential + 1*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-size_t planar_mixed_forward_kinematics_batch(const planar_mixed_model *model, size_t n, const
-    planar_mixed_real *q_actuated, const planar_mixed_real *X0, planar_mixed_real *X, int *status)
+int planar_mixed_condition(const planar_mixed_model *model, const planar_mixed_real *X,
+    planar_mixed_real *sigma, planar_mixed_real *legs)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = planar_mixed_forward_kinematics(model, q_actuated + 3*i, X0 + 3*i, X + 3*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    int code;
+    condition_any(model, X, NULL, sigma, legs, &code);
+    return code;
 }
 
 size_t planar_mixed_condition_batch(const planar_mixed_model *model, size_t n, const
     planar_mixed_real *X, planar_mixed_real *sigma, planar_mixed_real *legs, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
+    size_t failed = 0, i = 0;
+    for (; i < n; ++i) {
         const int code = planar_mixed_condition(model, X + 3*i, sigma + 3*i, legs + 3*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
+int planar_mixed_forward_kinematics(const planar_mixed_model *model, const planar_mixed_real
+    *q_actuated, const planar_mixed_real *X0, planar_mixed_real *X)
+{
+    int code;
+    forward_kinematics_any(model, q_actuated, X0, X, &code);
+    return code;
+}
+
+size_t planar_mixed_forward_kinematics_batch(const planar_mixed_model *model, size_t n, const
+    planar_mixed_real *q_actuated, const planar_mixed_real *X0, planar_mixed_real *X, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; i < n; ++i) {
+        const int code = planar_mixed_forward_kinematics(model, q_actuated + 3*i, X0 + 3*i, X + 3*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int planar_mixed_dissipation(const planar_mixed_model *model, const planar_mixed_real *X, const
+    planar_mixed_real *V, planar_mixed_real *dissipation)
+{
+    int code;
+    (void)model;
+    (void)X;
+    dissipation_any(V, dissipation, &code);
+    return code;
+}
+
+size_t planar_mixed_dissipation_batch(const planar_mixed_model *model, size_t n, const
+    planar_mixed_real *X, const planar_mixed_real *V, planar_mixed_real *dissipation, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; i < n; ++i) {
+        const int code = planar_mixed_dissipation(model, X + 3*i, V + 3*i, dissipation + 1*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int planar_mixed_momentum(const planar_mixed_model *model, const planar_mixed_real *X, const
+    planar_mixed_real *V, planar_mixed_real *momentum)
+{
+    int code;
+    momentum_any(model, 1, X, V, momentum, &code);
+    return code;
+}
+
+size_t planar_mixed_momentum_batch(const planar_mixed_model *model, size_t n, const
+    planar_mixed_real *X, const planar_mixed_real *V, planar_mixed_real *momentum, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        momentum_any(model, LANES, X + 3*i, V + 3*i, momentum + 3*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = planar_mixed_momentum(model, X + 3*(i + k), V + 3*(i + k), momentum + 3*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = planar_mixed_momentum(model, X + 3*i, V + 3*i, momentum + 3*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int planar_mixed_actuator_positions(const planar_mixed_model *model, const planar_mixed_real *X,
+    planar_mixed_real *q)
+{
+    int code;
+    actuator_positions_any(model, 1, X, q, &code);
+    return code;
+}
+
+size_t planar_mixed_actuator_positions_batch(const planar_mixed_model *model, size_t n, const
+    planar_mixed_real *X, planar_mixed_real *q, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        actuator_positions_any(model, LANES, X + 3*i, q + 3*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = planar_mixed_actuator_positions(model, X + 3*(i + k), q + 3*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = planar_mixed_actuator_positions(model, X + 3*i, q + 3*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int planar_mixed_actuator_rates(const planar_mixed_model *model, const planar_mixed_real *X, const
+    planar_mixed_real *V, planar_mixed_real *rates)
+{
+    int code;
+    actuator_rates_any(model, 1, X, V, rates, &code);
+    return code;
+}
+
+size_t planar_mixed_actuator_rates_batch(const planar_mixed_model *model, size_t n, const
+    planar_mixed_real *X, const planar_mixed_real *V, planar_mixed_real *rates, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        actuator_rates_any(model, LANES, X + 3*i, V + 3*i, rates + 3*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = planar_mixed_actuator_rates(model, X + 3*(i + k), V + 3*(i + k), rates + 3*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = planar_mixed_actuator_rates(model, X + 3*i, V + 3*i, rates + 3*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int planar_mixed_actuator_accelerations(const planar_mixed_model *model, const planar_mixed_real
+    *X, const planar_mixed_real *V, const planar_mixed_real *A, planar_mixed_real *accelerations)
+{
+    int code;
+    actuator_accelerations_any(model, 1, X, V, A, accelerations, &code);
+    return code;
+}
+
+size_t planar_mixed_actuator_accelerations_batch(const planar_mixed_model *model, size_t n, const
+    planar_mixed_real *X, const planar_mixed_real *V, const planar_mixed_real *A,
+    planar_mixed_real *accelerations, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        actuator_accelerations_any(model, LANES, X + 3*i, V + 3*i, A + 3*i, accelerations + 3*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = planar_mixed_actuator_accelerations(model, X + 3*(i + k), V + 3*(i + k), A + 3*(i + k),
+                    accelerations + 3*(i + k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = planar_mixed_actuator_accelerations(model, X + 3*i, V + 3*i, A + 3*i,
+            accelerations + 3*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int planar_mixed_power(const planar_mixed_model *model, const planar_mixed_real *X, const
+    planar_mixed_real *V, const planar_mixed_real *tau, planar_mixed_real *power)
+{
+    int code;
+    power_any(model, 1, X, V, tau, power, &code);
+    return code;
+}
+
+size_t planar_mixed_power_batch(const planar_mixed_model *model, size_t n, const planar_mixed_real
+    *X, const planar_mixed_real *V, const planar_mixed_real *tau, planar_mixed_real *power, int
+    *status)
+{
+    size_t failed = 0, i = 0;
+    for (; i + LANES <= n; i += LANES) {
+        int codes[LANES];
+        power_any(model, LANES, X + 3*i, V + 3*i, tau + 3*i, power + 1*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != OK) {
+                codes[k] = planar_mixed_power(model, X + 3*(i + k), V + 3*(i + k), tau + 3*(i + k), power + 1*(i +
+                    k));
+            }
+        }
+        failed += record(codes, LANES, status ? status + i : NULL);
+    }
+    for (; i < n; ++i) {
+        const int code = planar_mixed_power(model, X + 3*i, V + 3*i, tau + 3*i, power + 1*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int planar_mixed_rotation(const planar_mixed_real *X, planar_mixed_real *R)
+{
+    int code;
+    rotation_any(X, R, &code);
+    return code;
+}
+
 size_t planar_mixed_rotation_batch(size_t n, const planar_mixed_real *X, planar_mixed_real *R, int
     *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
+    size_t failed = 0, i = 0;
+    for (; i < n; ++i) {
         const int code = planar_mixed_rotation(X + 3*i, R + 4*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
+int planar_mixed_pose(const planar_mixed_real *t, const planar_mixed_real *R, planar_mixed_real
+    *X)
+{
+    int code;
+    pose_any(t, R, X, &code);
+    return code;
+}
+
 size_t planar_mixed_pose_batch(size_t n, const planar_mixed_real *t, const planar_mixed_real *R,
     planar_mixed_real *X, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
+    size_t failed = 0, i = 0;
+    for (; i < n; ++i) {
         const int code = planar_mixed_pose(t + 2*i, R + 4*i, X + 3*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
+int planar_mixed_X_dot(const planar_mixed_real *X, const planar_mixed_real *V, planar_mixed_real
+    *X_dot)
+{
+    int code;
+    X_dot_any(X, V, X_dot, &code);
+    return code;
+}
+
 size_t planar_mixed_X_dot_batch(size_t n, const planar_mixed_real *X, const planar_mixed_real *V,
     planar_mixed_real *X_dot, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
+    size_t failed = 0, i = 0;
+    for (; i < n; ++i) {
         const int code = planar_mixed_X_dot(X + 3*i, V + 3*i, X_dot + 3*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int planar_mixed_retract(const planar_mixed_real *X, const planar_mixed_real *step,
+    planar_mixed_real *X_moved)
+{
+    int code;
+    retract_any(X, step, X_moved, &code);
+    return code;
+}
+
+size_t planar_mixed_retract_batch(size_t n, const planar_mixed_real *X, const planar_mixed_real
+    *step, planar_mixed_real *X_moved, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; i < n; ++i) {
+        const int code = planar_mixed_retract(X + 3*i, step + 3*i, X_moved + 3*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int planar_mixed_difference(const planar_mixed_real *X0, const planar_mixed_real *X1,
+    planar_mixed_real *step)
+{
+    int code;
+    difference_any(X0, X1, step, &code);
+    return code;
+}
+
+size_t planar_mixed_difference_batch(size_t n, const planar_mixed_real *X0, const
+    planar_mixed_real *X1, planar_mixed_real *step, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; i < n; ++i) {
+        const int code = planar_mixed_difference(X0 + 3*i, X1 + 3*i, step + 3*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int planar_mixed_interpolate(const planar_mixed_real *X0, const planar_mixed_real *X1, const
+    planar_mixed_real *s, planar_mixed_real *X)
+{
+    int code;
+    interpolate_any(X0, X1, s, X, &code);
+    return code;
+}
+
+size_t planar_mixed_interpolate_batch(size_t n, const planar_mixed_real *X0, const
+    planar_mixed_real *X1, const planar_mixed_real *s, planar_mixed_real *X, int *status)
+{
+    size_t failed = 0, i = 0;
+    for (; i < n; ++i) {
+        const int code = planar_mixed_interpolate(X0 + 3*i, X1 + 3*i, s + 1*i, X + 3*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;

@@ -162,6 +162,9 @@ typedef struct {
 extern const planar_mixed_params planar_mixed_default_params;
 extern const planar_mixed_real planar_mixed_HOME_X[PLANAR_MIXED_NQ];
 extern const planar_mixed_real planar_mixed_HOME_Q[PLANAR_MIXED_NJ];
+/* Places of the actuated joints in q, and their names, in the order of tau. */
+extern const size_t planar_mixed_ACTUATED[PLANAR_MIXED_NU];
+extern const char *const planar_mixed_ACTUATOR_NAMES[PLANAR_MIXED_NU];
 
 /* Prepare a model.  PLANAR_MIXED_INVALID, and the model is all NaN: a parameter is not finite or beyond
    1e+12; a mass is negative; an izz is negative (other entries of inertias do not
@@ -190,16 +193,8 @@ int planar_mixed_H(const planar_mixed_model *model, const planar_mixed_real *X, 
 size_t planar_mixed_H_batch(const planar_mixed_model *model, size_t n, const planar_mixed_real *X,
     planar_mixed_real *H, int *status);
 
-/* M, Z and H together, sharing the work. 326 mul, 236 add, 4 div, 3 sqrt, 0 trig. In: X (NQ), V
-   (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
-int planar_mixed_dynamics(const planar_mixed_model *model, const planar_mixed_real *X, const
-    planar_mixed_real *V, planar_mixed_real *M, planar_mixed_real *Z, planar_mixed_real *H);
-size_t planar_mixed_dynamics_batch(const planar_mixed_model *model, size_t n, const
-    planar_mixed_real *X, const planar_mixed_real *V, planar_mixed_real *M, planar_mixed_real *Z,
-    planar_mixed_real *H, int *status);
-
-/* Displacements q of all joints, on the assembly branch of home. 60 mul, 37 add, 2 div, 3 sqrt, 4
-   trig. In: X (NQ). Out: q (NJ). */
+/* Displacements q of all joints. They are those of the assembly branch of home. 60 mul, 37 add, 2
+   div, 3 sqrt, 4 trig. In: X (NQ). Out: q (NJ). */
 int planar_mixed_inverse_kinematics(const planar_mixed_model *model, const planar_mixed_real *X,
     planar_mixed_real *q);
 size_t planar_mixed_inverse_kinematics_batch(const planar_mixed_model *model, size_t n, const
@@ -219,6 +214,14 @@ int planar_mixed_joint_accelerations(const planar_mixed_model *model, const plan
 size_t planar_mixed_joint_accelerations_batch(const planar_mixed_model *model, size_t n, const
     planar_mixed_real *X, const planar_mixed_real *V, const planar_mixed_real *A,
     planar_mixed_real *accelerations, int *status);
+
+/* M, Z and H together, sharing the work. 326 mul, 236 add, 4 div, 3 sqrt, 0 trig. In: X (NQ), V
+   (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
+int planar_mixed_dynamics(const planar_mixed_model *model, const planar_mixed_real *X, const
+    planar_mixed_real *V, planar_mixed_real *M, planar_mixed_real *Z, planar_mixed_real *H);
+size_t planar_mixed_dynamics_batch(const planar_mixed_model *model, size_t n, const
+    planar_mixed_real *X, const planar_mixed_real *V, planar_mixed_real *M, planar_mixed_real *Z,
+    planar_mixed_real *H, int *status);
 
 /* Actuator forces tau for the acceleration A, by Eq. 3. 254 mul, 173 add, 4 div, 3 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
@@ -240,8 +243,9 @@ size_t planar_mixed_forward_dynamics_batch(const planar_mixed_model *model, size
     planar_mixed_real *X, const planar_mixed_real *V, const planar_mixed_real *tau, const
     planar_mixed_real *wrench, planar_mixed_real *A, int *status);
 
-/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
-   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
+/* A with the entries of passive extra coordinates that the others allow. It is A: there are no
+   passive extra coordinates, whose accelerations would follow. In: X (NQ), V (NV), A (NV), wrench
+   (NW, or NULL). Out: completed (NV). */
 int planar_mixed_complete_acceleration(const planar_mixed_model *model, const planar_mixed_real
     *X, const planar_mixed_real *V, const planar_mixed_real *A, const planar_mixed_real *wrench,
     planar_mixed_real *completed);
@@ -249,9 +253,9 @@ size_t planar_mixed_complete_acceleration_batch(const planar_mixed_model *model,
     planar_mixed_real *X, const planar_mixed_real *V, const planar_mixed_real *A, const
     planar_mixed_real *wrench, planar_mixed_real *completed, int *status);
 
-/* Force of each leg on the platform at its platform joint, base axes. 230 mul, 143 add, 4 div, 3
-   sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
-   forces (3 x 3). */
+/* Force of each leg on the platform at its platform joint, base axes. The actuators give the
+   forces of inverse_dynamics. 230 mul, 143 add, 4 div, 3 sqrt, 0 trig; inverse dynamics apart.
+   In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (3 x 3). */
 int planar_mixed_leg_reactions(const planar_mixed_model *model, const planar_mixed_real *X, const
     planar_mixed_real *V, const planar_mixed_real *A, const planar_mixed_real *wrench,
     planar_mixed_real *forces);
@@ -259,37 +263,84 @@ size_t planar_mixed_leg_reactions_batch(const planar_mixed_model *model, size_t 
     planar_mixed_real *X, const planar_mixed_real *V, const planar_mixed_real *A, const
     planar_mixed_real *wrench, planar_mixed_real *forces, int *status);
 
-/* Kinetic and potential energy; the latter is zero at the base origin. In: X (NQ), V (NV). Out:
-   kinetic (1), potential (1). */
+/* Kinetic and potential energy [J]; the latter is zero at the base origin. In: X (NQ), V (NV).
+   Out: kinetic (1), potential (1). */
 int planar_mixed_energy(const planar_mixed_model *model, const planar_mixed_real *X, const
     planar_mixed_real *V, planar_mixed_real *kinetic, planar_mixed_real *potential);
 size_t planar_mixed_energy_batch(const planar_mixed_model *model, size_t n, const
     planar_mixed_real *X, const planar_mixed_real *V, planar_mixed_real *kinetic,
     planar_mixed_real *potential, int *status);
 
-/* X at which the driven joints stand at q_actuated, by Gauss-Newton from X0; extra coordinates
-   that the drives do not determine stay. In: q_actuated (NU), X0 (NQ). Out: X (NQ). */
-int planar_mixed_forward_kinematics(const planar_mixed_model *model, const planar_mixed_real
-    *q_actuated, const planar_mixed_real *X0, planar_mixed_real *X);
-size_t planar_mixed_forward_kinematics_batch(const planar_mixed_model *model, size_t n, const
-    planar_mixed_real *q_actuated, const planar_mixed_real *X0, planar_mixed_real *X, int *status);
-
-/* Singular values of H in descending order, moment rows divided by the rms distance of the
-   platform points from their centroid; for every leg the least tested pivot as a fraction of its
-   scale. 106 mul, 67 add, 4 div, 6 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
-   sigma (3), legs (3). */
+/* How far a pose is from singularities: singular values of H, rows of moments divided by a
+   length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
+   distance of the platform points from their centroid, or where they coincide the rms size of the
+   legs. 106 mul, 67 add, 4 div, 6 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
+   (3), legs (3). */
 int planar_mixed_condition(const planar_mixed_model *model, const planar_mixed_real *X,
     planar_mixed_real *sigma, planar_mixed_real *legs);
 size_t planar_mixed_condition_batch(const planar_mixed_model *model, size_t n, const
     planar_mixed_real *X, planar_mixed_real *sigma, planar_mixed_real *legs, int *status);
 
-/* base_R_platform; a quaternion need not be normalised. In: X (NQ). Out: R (2 x 2). */
+/* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
+   that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
+   X0 (NQ). Out: X (NQ). */
+int planar_mixed_forward_kinematics(const planar_mixed_model *model, const planar_mixed_real
+    *q_actuated, const planar_mixed_real *X0, planar_mixed_real *X);
+size_t planar_mixed_forward_kinematics_batch(const planar_mixed_model *model, size_t n, const
+    planar_mixed_real *q_actuated, const planar_mixed_real *X0, planar_mixed_real *X, int *status);
+
+/* Power that friction takes, not negative; the rate of energy is power less this. In: X (NQ), V
+   (NV). Out: dissipation (1). */
+int planar_mixed_dissipation(const planar_mixed_model *model, const planar_mixed_real *X, const
+    planar_mixed_real *V, planar_mixed_real *dissipation);
+size_t planar_mixed_dissipation_batch(const planar_mixed_model *model, size_t n, const
+    planar_mixed_real *X, const planar_mixed_real *V, planar_mixed_real *dissipation, int *status);
+
+/* Generalised momentum M V. 172 mul, 129 add, 4 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+   momentum (NV). */
+int planar_mixed_momentum(const planar_mixed_model *model, const planar_mixed_real *X, const
+    planar_mixed_real *V, planar_mixed_real *momentum);
+size_t planar_mixed_momentum_batch(const planar_mixed_model *model, size_t n, const
+    planar_mixed_real *X, const planar_mixed_real *V, planar_mixed_real *momentum, int *status);
+
+/* Displacements of the actuated joints, in the order of tau. 60 mul, 37 add, 2 div, 3 sqrt, 4
+   trig. In: X (NQ). Out: q (NU). */
+int planar_mixed_actuator_positions(const planar_mixed_model *model, const planar_mixed_real *X,
+    planar_mixed_real *q);
+size_t planar_mixed_actuator_positions_batch(const planar_mixed_model *model, size_t n, const
+    planar_mixed_real *X, planar_mixed_real *q, int *status);
+
+/* Rates of the actuated joints, in the order of tau. 98 mul, 57 add, 4 div, 3 sqrt, 0 trig. In: X
+   (NQ), V (NV). Out: rates (NU). */
+int planar_mixed_actuator_rates(const planar_mixed_model *model, const planar_mixed_real *X, const
+    planar_mixed_real *V, planar_mixed_real *rates);
+size_t planar_mixed_actuator_rates_batch(const planar_mixed_model *model, size_t n, const
+    planar_mixed_real *X, const planar_mixed_real *V, planar_mixed_real *rates, int *status);
+
+/* Accelerations of the actuated joints, in the order of tau. 148 mul, 86 add, 4 div, 3 sqrt, 0
+   trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
+int planar_mixed_actuator_accelerations(const planar_mixed_model *model, const planar_mixed_real
+    *X, const planar_mixed_real *V, const planar_mixed_real *A, planar_mixed_real *accelerations);
+size_t planar_mixed_actuator_accelerations_batch(const planar_mixed_model *model, size_t n, const
+    planar_mixed_real *X, const planar_mixed_real *V, const planar_mixed_real *A,
+    planar_mixed_real *accelerations, int *status);
+
+/* Power that actuators give to the mechanism: tau times their rates. In: X (NQ), V (NV), tau
+   (NU). Out: power (1). */
+int planar_mixed_power(const planar_mixed_model *model, const planar_mixed_real *X, const
+    planar_mixed_real *V, const planar_mixed_real *tau, planar_mixed_real *power);
+size_t planar_mixed_power_batch(const planar_mixed_model *model, size_t n, const planar_mixed_real
+    *X, const planar_mixed_real *V, const planar_mixed_real *tau, planar_mixed_real *power, int
+    *status);
+
+/* base_R_platform at X; a quaternion need not be normalised. In: X (NQ). Out: R (2 x 2). */
 int planar_mixed_rotation(const planar_mixed_real *X, planar_mixed_real *R);
 size_t planar_mixed_rotation_batch(size_t n, const planar_mixed_real *X, planar_mixed_real *R, int
     *status);
 
-/* X of the platform at origin t with rotation matrix R. INVALID where R has not orthonormal rows,
-   to 1e-06 (float: 1e-5), and determinant +1. In: t (2), R (2 x 2). Out: X (NQ). */
+/* X of the platform at origin t with rotation matrix R; extra coordinates zero. INVALID where R
+   has not orthonormal rows, to 1e-06 (float: 1e-5), and determinant +1. In: t (2), R (2 x 2).
+   Out: X (NQ). */
 int planar_mixed_pose(const planar_mixed_real *t, const planar_mixed_real *R, planar_mixed_real
     *X);
 size_t planar_mixed_pose_batch(size_t n, const planar_mixed_real *t, const planar_mixed_real *R,
@@ -300,6 +351,27 @@ int planar_mixed_X_dot(const planar_mixed_real *X, const planar_mixed_real *V, p
     *X_dot);
 size_t planar_mixed_X_dot_batch(size_t n, const planar_mixed_real *X, const planar_mixed_real *V,
     planar_mixed_real *X_dot, int *status);
+
+/* X moved by a displacement: (t + d, exp([phi]) R, y + dy) of step = (d, phi, dy). In: X (NQ),
+   step (NV). Out: X_moved (NQ). */
+int planar_mixed_retract(const planar_mixed_real *X, const planar_mixed_real *step,
+    planar_mixed_real *X_moved);
+size_t planar_mixed_retract_batch(size_t n, const planar_mixed_real *X, const planar_mixed_real
+    *step, planar_mixed_real *X_moved, int *status);
+
+/* The displacement from X0 to X1, the inverse of retract; rotations the shorter way. In: X0 (NQ),
+   X1 (NQ). Out: step (NV). */
+int planar_mixed_difference(const planar_mixed_real *X0, const planar_mixed_real *X1,
+    planar_mixed_real *step);
+size_t planar_mixed_difference_batch(size_t n, const planar_mixed_real *X0, const
+    planar_mixed_real *X1, planar_mixed_real *step, int *status);
+
+/* X0 moved by s times the displacement to X1: straight on, turning about one axis. In: X0 (NQ),
+   X1 (NQ), s (1). Out: X (NQ). */
+int planar_mixed_interpolate(const planar_mixed_real *X0, const planar_mixed_real *X1, const
+    planar_mixed_real *s, planar_mixed_real *X);
+size_t planar_mixed_interpolate_batch(size_t n, const planar_mixed_real *X0, const
+    planar_mixed_real *X1, const planar_mixed_real *s, planar_mixed_real *X, int *status);
 
 #ifdef __cplusplus
 }

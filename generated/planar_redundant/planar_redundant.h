@@ -152,6 +152,9 @@ typedef struct {
 extern const planar_redundant_params planar_redundant_default_params;
 extern const planar_redundant_real planar_redundant_HOME_X[PLANAR_REDUNDANT_NQ];
 extern const planar_redundant_real planar_redundant_HOME_Q[PLANAR_REDUNDANT_NJ];
+/* Places of the actuated joints in q, and their names, in the order of tau. */
+extern const size_t planar_redundant_ACTUATED[PLANAR_REDUNDANT_NU];
+extern const char *const planar_redundant_ACTUATOR_NAMES[PLANAR_REDUNDANT_NU];
 
 /* Prepare a model.  PLANAR_REDUNDANT_INVALID, and the model is all NaN: a parameter is not finite or beyond
    1e+12; a mass is negative; an izz is negative (other entries of inertias do not
@@ -181,17 +184,8 @@ int planar_redundant_H(const planar_redundant_model *model, const planar_redunda
 size_t planar_redundant_H_batch(const planar_redundant_model *model, size_t n, const
     planar_redundant_real *X, planar_redundant_real *H, int *status);
 
-/* M, Z and H together, sharing the work. 435 mul, 299 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V
-   (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
-int planar_redundant_dynamics(const planar_redundant_model *model, const planar_redundant_real *X,
-    const planar_redundant_real *V, planar_redundant_real *M, planar_redundant_real *Z,
-    planar_redundant_real *H);
-size_t planar_redundant_dynamics_batch(const planar_redundant_model *model, size_t n, const
-    planar_redundant_real *X, const planar_redundant_real *V, planar_redundant_real *M,
-    planar_redundant_real *Z, planar_redundant_real *H, int *status);
-
-/* Displacements q of all joints, on the assembly branch of home. 93 mul, 49 add, 3 div, 3 sqrt, 6
-   trig. In: X (NQ). Out: q (NJ). */
+/* Displacements q of all joints. They are those of the assembly branch of home. 93 mul, 49 add, 3
+   div, 3 sqrt, 6 trig. In: X (NQ). Out: q (NJ). */
 int planar_redundant_inverse_kinematics(const planar_redundant_model *model, const
     planar_redundant_real *X, planar_redundant_real *q);
 size_t planar_redundant_inverse_kinematics_batch(const planar_redundant_model *model, size_t n,
@@ -214,6 +208,15 @@ size_t planar_redundant_joint_accelerations_batch(const planar_redundant_model *
     const planar_redundant_real *X, const planar_redundant_real *V, const planar_redundant_real
     *A, planar_redundant_real *accelerations, int *status);
 
+/* M, Z and H together, sharing the work. 435 mul, 299 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V
+   (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
+int planar_redundant_dynamics(const planar_redundant_model *model, const planar_redundant_real *X,
+    const planar_redundant_real *V, planar_redundant_real *M, planar_redundant_real *Z,
+    planar_redundant_real *H);
+size_t planar_redundant_dynamics_batch(const planar_redundant_model *model, size_t n, const
+    planar_redundant_real *X, const planar_redundant_real *V, planar_redundant_real *M,
+    planar_redundant_real *Z, planar_redundant_real *H, int *status);
+
 /* Actuator forces tau for the acceleration A, by Eq. 3. 345 mul, 223 add, 6 div, 3 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU). */
@@ -234,8 +237,9 @@ size_t planar_redundant_forward_dynamics_batch(const planar_redundant_model *mod
     const planar_redundant_real *X, const planar_redundant_real *V, const planar_redundant_real
     *tau, const planar_redundant_real *wrench, planar_redundant_real *A, int *status);
 
-/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
-   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
+/* A with the entries of passive extra coordinates that the others allow. It is A: there are no
+   passive extra coordinates, whose accelerations would follow. In: X (NQ), V (NV), A (NV), wrench
+   (NW, or NULL). Out: completed (NV). */
 int planar_redundant_complete_acceleration(const planar_redundant_model *model, const
     planar_redundant_real *X, const planar_redundant_real *V, const planar_redundant_real *A,
     const planar_redundant_real *wrench, planar_redundant_real *completed);
@@ -243,9 +247,9 @@ size_t planar_redundant_complete_acceleration_batch(const planar_redundant_model
     const planar_redundant_real *X, const planar_redundant_real *V, const planar_redundant_real
     *A, const planar_redundant_real *wrench, planar_redundant_real *completed, int *status);
 
-/* Force of each leg on the platform at its platform joint, base axes. 309 mul, 187 add, 6 div, 3
-   sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
-   forces (3 x 3). */
+/* Force of each leg on the platform at its platform joint, base axes. The actuators give the
+   forces of inverse_dynamics. 309 mul, 187 add, 6 div, 3 sqrt, 0 trig; inverse dynamics apart.
+   In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (3 x 3). */
 int planar_redundant_leg_reactions(const planar_redundant_model *model, const
     planar_redundant_real *X, const planar_redundant_real *V, const planar_redundant_real *A,
     const planar_redundant_real *wrench, planar_redundant_real *forces);
@@ -253,8 +257,8 @@ size_t planar_redundant_leg_reactions_batch(const planar_redundant_model *model,
     planar_redundant_real *X, const planar_redundant_real *V, const planar_redundant_real *A,
     const planar_redundant_real *wrench, planar_redundant_real *forces, int *status);
 
-/* Kinetic and potential energy; the latter is zero at the base origin. In: X (NQ), V (NV). Out:
-   kinetic (1), potential (1). */
+/* Kinetic and potential energy [J]; the latter is zero at the base origin. In: X (NQ), V (NV).
+   Out: kinetic (1), potential (1). */
 int planar_redundant_energy(const planar_redundant_model *model, const planar_redundant_real *X,
     const planar_redundant_real *V, planar_redundant_real *kinetic, planar_redundant_real
     *potential);
@@ -262,25 +266,76 @@ size_t planar_redundant_energy_batch(const planar_redundant_model *model, size_t
     planar_redundant_real *X, const planar_redundant_real *V, planar_redundant_real *kinetic,
     planar_redundant_real *potential, int *status);
 
-/* X at which the driven joints stand at q_actuated, by Gauss-Newton from X0; extra coordinates
-   that the drives do not determine stay. In: q_actuated (NU), X0 (NQ). Out: X (NQ). */
-int planar_redundant_forward_kinematics(const planar_redundant_model *model, const
-    planar_redundant_real *q_actuated, const planar_redundant_real *X0, planar_redundant_real *X);
-size_t planar_redundant_forward_kinematics_batch(const planar_redundant_model *model, size_t n,
-    const planar_redundant_real *q_actuated, const planar_redundant_real *X0,
-    planar_redundant_real *X, int *status);
-
-/* Singular values of H in descending order, moment rows divided by the rms distance of the
-   platform points from their centroid; for every leg the least tested pivot as a fraction of its
-   scale. 156 mul, 86 add, 6 div, 7 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
-   sigma (4), legs (3). */
+/* How far a pose is from singularities: singular values of H, rows of moments divided by a
+   length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
+   distance of the platform points from their centroid, or where they coincide the rms size of the
+   legs. 156 mul, 86 add, 6 div, 7 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
+   (4), legs (3). */
 int planar_redundant_condition(const planar_redundant_model *model, const planar_redundant_real
     *X, planar_redundant_real *sigma, planar_redundant_real *legs);
 size_t planar_redundant_condition_batch(const planar_redundant_model *model, size_t n, const
     planar_redundant_real *X, planar_redundant_real *sigma, planar_redundant_real *legs, int
     *status);
 
-/* base_R_platform; a quaternion need not be normalised. In: X (NQ). Out: R (2 x 2). */
+/* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
+   that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
+   X0 (NQ). Out: X (NQ). */
+int planar_redundant_forward_kinematics(const planar_redundant_model *model, const
+    planar_redundant_real *q_actuated, const planar_redundant_real *X0, planar_redundant_real *X);
+size_t planar_redundant_forward_kinematics_batch(const planar_redundant_model *model, size_t n,
+    const planar_redundant_real *q_actuated, const planar_redundant_real *X0,
+    planar_redundant_real *X, int *status);
+
+/* Power that friction takes, not negative; the rate of energy is power less this. In: X (NQ), V
+   (NV). Out: dissipation (1). */
+int planar_redundant_dissipation(const planar_redundant_model *model, const planar_redundant_real
+    *X, const planar_redundant_real *V, planar_redundant_real *dissipation);
+size_t planar_redundant_dissipation_batch(const planar_redundant_model *model, size_t n, const
+    planar_redundant_real *X, const planar_redundant_real *V, planar_redundant_real *dissipation,
+    int *status);
+
+/* Generalised momentum M V. 246 mul, 170 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+   momentum (NV). */
+int planar_redundant_momentum(const planar_redundant_model *model, const planar_redundant_real *X,
+    const planar_redundant_real *V, planar_redundant_real *momentum);
+size_t planar_redundant_momentum_batch(const planar_redundant_model *model, size_t n, const
+    planar_redundant_real *X, const planar_redundant_real *V, planar_redundant_real *momentum, int
+    *status);
+
+/* Displacements of the actuated joints, in the order of tau. 93 mul, 49 add, 3 div, 3 sqrt, 6
+   trig. In: X (NQ). Out: q (NU). */
+int planar_redundant_actuator_positions(const planar_redundant_model *model, const
+    planar_redundant_real *X, planar_redundant_real *q);
+size_t planar_redundant_actuator_positions_batch(const planar_redundant_model *model, size_t n,
+    const planar_redundant_real *X, planar_redundant_real *q, int *status);
+
+/* Rates of the actuated joints, in the order of tau. 161 mul, 87 add, 6 div, 3 sqrt, 0 trig. In:
+   X (NQ), V (NV). Out: rates (NU). */
+int planar_redundant_actuator_rates(const planar_redundant_model *model, const
+    planar_redundant_real *X, const planar_redundant_real *V, planar_redundant_real *rates);
+size_t planar_redundant_actuator_rates_batch(const planar_redundant_model *model, size_t n, const
+    planar_redundant_real *X, const planar_redundant_real *V, planar_redundant_real *rates, int
+    *status);
+
+/* Accelerations of the actuated joints, in the order of tau. 220 mul, 122 add, 6 div, 3 sqrt, 0
+   trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
+int planar_redundant_actuator_accelerations(const planar_redundant_model *model, const
+    planar_redundant_real *X, const planar_redundant_real *V, const planar_redundant_real *A,
+    planar_redundant_real *accelerations);
+size_t planar_redundant_actuator_accelerations_batch(const planar_redundant_model *model, size_t
+    n, const planar_redundant_real *X, const planar_redundant_real *V, const planar_redundant_real
+    *A, planar_redundant_real *accelerations, int *status);
+
+/* Power that actuators give to the mechanism: tau times their rates. In: X (NQ), V (NV), tau
+   (NU). Out: power (1). */
+int planar_redundant_power(const planar_redundant_model *model, const planar_redundant_real *X,
+    const planar_redundant_real *V, const planar_redundant_real *tau, planar_redundant_real
+    *power);
+size_t planar_redundant_power_batch(const planar_redundant_model *model, size_t n, const
+    planar_redundant_real *X, const planar_redundant_real *V, const planar_redundant_real *tau,
+    planar_redundant_real *power, int *status);
+
+/* base_R_platform at X; a quaternion need not be normalised. In: X (NQ). Out: R (2 x 2). */
 int planar_redundant_rotation(const planar_redundant_real *X, planar_redundant_real *R);
 size_t planar_redundant_rotation_batch(size_t n, const planar_redundant_real *X,
     planar_redundant_real *R, int *status);
@@ -298,6 +353,28 @@ int planar_redundant_X_dot(const planar_redundant_real *X, const planar_redundan
     planar_redundant_real *X_dot);
 size_t planar_redundant_X_dot_batch(size_t n, const planar_redundant_real *X, const
     planar_redundant_real *V, planar_redundant_real *X_dot, int *status);
+
+/* X moved by a displacement: (t + d, exp([phi]) R, y + dy) of step = (d, phi, dy). In: X (NQ),
+   step (NV). Out: X_moved (NQ). */
+int planar_redundant_retract(const planar_redundant_real *X, const planar_redundant_real *step,
+    planar_redundant_real *X_moved);
+size_t planar_redundant_retract_batch(size_t n, const planar_redundant_real *X, const
+    planar_redundant_real *step, planar_redundant_real *X_moved, int *status);
+
+/* The displacement from X0 to X1, the inverse of retract; rotations the shorter way. In: X0 (NQ),
+   X1 (NQ). Out: step (NV). */
+int planar_redundant_difference(const planar_redundant_real *X0, const planar_redundant_real *X1,
+    planar_redundant_real *step);
+size_t planar_redundant_difference_batch(size_t n, const planar_redundant_real *X0, const
+    planar_redundant_real *X1, planar_redundant_real *step, int *status);
+
+/* X0 moved by s times the displacement to X1: straight on, turning about one axis. In: X0 (NQ),
+   X1 (NQ), s (1). Out: X (NQ). */
+int planar_redundant_interpolate(const planar_redundant_real *X0, const planar_redundant_real *X1,
+    const planar_redundant_real *s, planar_redundant_real *X);
+size_t planar_redundant_interpolate_batch(size_t n, const planar_redundant_real *X0, const
+    planar_redundant_real *X1, const planar_redundant_real *s, planar_redundant_real *X, int
+    *status);
 
 #ifdef __cplusplus
 }

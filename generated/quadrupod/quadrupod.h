@@ -147,6 +147,9 @@ typedef struct {
 extern const quadrupod_params quadrupod_default_params;
 extern const quadrupod_real quadrupod_HOME_X[QUADRUPOD_NQ];
 extern const quadrupod_real quadrupod_HOME_Q[QUADRUPOD_NJ];
+/* Places of the actuated joints in q, and their names, in the order of tau. */
+extern const size_t quadrupod_ACTUATED[QUADRUPOD_NU];
+extern const char *const quadrupod_ACTUATOR_NAMES[QUADRUPOD_NU];
 
 /* Prepare a model.  QUADRUPOD_INVALID, and the model is all NaN: a parameter is not finite or beyond
    1e+12; a mass is negative; an inertia is not symmetric, or has a negative principal moment,
@@ -173,21 +176,14 @@ int quadrupod_H(const quadrupod_model *model, const quadrupod_real *X, quadrupod
 size_t quadrupod_H_batch(const quadrupod_model *model, size_t n, const quadrupod_real *X,
     quadrupod_real *H, int *status);
 
-/* Directions Hk of the constraint forces lambda. 197 mul, 116 add, 4 div, 3 sqrt, 0 trig. In: X
-   (NQ). Out: Hk (NV x NC). */
+/* Directions Hk of the constraint forces lambda (Eq. 36). 197 mul, 116 add, 4 div, 3 sqrt, 0
+   trig. In: X (NQ). Out: Hk (NV x NC). */
 int quadrupod_Hk(const quadrupod_model *model, const quadrupod_real *X, quadrupod_real *Hk);
 size_t quadrupod_Hk_batch(const quadrupod_model *model, size_t n, const quadrupod_real *X,
     quadrupod_real *Hk, int *status);
 
-/* M, Z and H together, sharing the work. 2245 mul, 1664 add, 17 div, 16 sqrt, 0 trig. In: X (NQ),
-   V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
-int quadrupod_dynamics(const quadrupod_model *model, const quadrupod_real *X, const quadrupod_real
-    *V, quadrupod_real *M, quadrupod_real *Z, quadrupod_real *H);
-size_t quadrupod_dynamics_batch(const quadrupod_model *model, size_t n, const quadrupod_real *X,
-    const quadrupod_real *V, quadrupod_real *M, quadrupod_real *Z, quadrupod_real *H, int *status);
-
-/* Residuals of the constraints [m, or 1 for angles]; zero where the loops close. 134 mul, 76 add,
-   4 div, 3 sqrt, 0 trig. In: X (NQ). Out: residual (NC). */
+/* Residuals of the constraints [m, or 1 for angles]; zero on closed loops (Eq. 37). 134 mul, 76
+   add, 4 div, 3 sqrt, 0 trig. In: X (NQ). Out: residual (NC). */
 int quadrupod_constraints(const quadrupod_model *model, const quadrupod_real *X, quadrupod_real
     *residual);
 size_t quadrupod_constraints_batch(const quadrupod_model *model, size_t n, const quadrupod_real
@@ -200,8 +196,8 @@ int quadrupod_constraint_bias(const quadrupod_model *model, const quadrupod_real
 size_t quadrupod_constraint_bias_batch(const quadrupod_model *model, size_t n, const
     quadrupod_real *X, const quadrupod_real *V, quadrupod_real *bias, int *status);
 
-/* Displacements q of all joints, on the assembly branch of home. 135 mul, 100 add, 10 div, 10
-   sqrt, 10 trig. In: X (NQ). Out: q (NJ). */
+/* Displacements q of all joints. They are those of the assembly branch of home. 135 mul, 100 add,
+   10 div, 10 sqrt, 10 trig. In: X (NQ). Out: q (NJ). */
 int quadrupod_inverse_kinematics(const quadrupod_model *model, const quadrupod_real *X,
     quadrupod_real *q);
 size_t quadrupod_inverse_kinematics_batch(const quadrupod_model *model, size_t n, const
@@ -222,9 +218,16 @@ size_t quadrupod_joint_accelerations_batch(const quadrupod_model *model, size_t 
     quadrupod_real *X, const quadrupod_real *V, const quadrupod_real *A, quadrupod_real
     *accelerations, int *status);
 
-/* Actuator forces tau and multipliers lambda for the acceleration A, by Eq. 3, of least norm.
-   1392 mul, 1032 add, 17 div, 16 sqrt, 0 trig; the solution of the linear equations apart. In: X
-   (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: tau (NU), lambda (NC). */
+/* M, Z and H together, sharing the work. 2245 mul, 1664 add, 17 div, 16 sqrt, 0 trig. In: X (NQ),
+   V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
+int quadrupod_dynamics(const quadrupod_model *model, const quadrupod_real *X, const quadrupod_real
+    *V, quadrupod_real *M, quadrupod_real *Z, quadrupod_real *H);
+size_t quadrupod_dynamics_batch(const quadrupod_model *model, size_t n, const quadrupod_real *X,
+    const quadrupod_real *V, quadrupod_real *M, quadrupod_real *Z, quadrupod_real *H, int *status);
+
+/* Actuator forces tau for the acceleration A, by Eq. 3. tau has the least norm. 1392 mul, 1032
+   add, 17 div, 16 sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), A
+   (NV), wrench (NW, or NULL). Out: tau (NU), lambda (NC). */
 int quadrupod_inverse_dynamics(const quadrupod_model *model, const quadrupod_real *X, const
     quadrupod_real *V, const quadrupod_real *A, const quadrupod_real *wrench, quadrupod_real *tau,
     quadrupod_real *lambda);
@@ -232,9 +235,10 @@ size_t quadrupod_inverse_dynamics_batch(const quadrupod_model *model, size_t n, 
     quadrupod_real *X, const quadrupod_real *V, const quadrupod_real *A, const quadrupod_real
     *wrench, quadrupod_real *tau, quadrupod_real *lambda, int *status);
 
-/* Actuator forces tau and multipliers lambda of least sum of weights tau^2. 1392 mul, 1032 add,
-   17 div, 16 sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), A
-   (NV), wrench (NW, or NULL), weights (NU, positive). Out: tau (NU), lambda (NC). */
+/* Actuator forces tau for the acceleration A, by Eq. 3. tau has the least sum of weights tau^2.
+   1392 mul, 1032 add, 17 div, 16 sqrt, 0 trig; the solution of the linear equations apart. In: X
+   (NQ), V (NV), A (NV), wrench (NW, or NULL), weights (NU, positive). Out: tau (NU), lambda (NC).
+   */
 int quadrupod_inverse_dynamics_weighted(const quadrupod_model *model, const quadrupod_real *X,
     const quadrupod_real *V, const quadrupod_real *A, const quadrupod_real *wrench, const
     quadrupod_real *weights, quadrupod_real *tau, quadrupod_real *lambda);
@@ -253,8 +257,9 @@ size_t quadrupod_forward_dynamics_batch(const quadrupod_model *model, size_t n, 
     quadrupod_real *X, const quadrupod_real *V, const quadrupod_real *tau, const quadrupod_real
     *wrench, quadrupod_real *A, quadrupod_real *lambda, int *status);
 
-/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
-   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
+/* A with the entries of passive extra coordinates that the others allow. It is A: there are no
+   passive extra coordinates, whose accelerations would follow. In: X (NQ), V (NV), A (NV), wrench
+   (NW, or NULL). Out: completed (NV). */
 int quadrupod_complete_acceleration(const quadrupod_model *model, const quadrupod_real *X, const
     quadrupod_real *V, const quadrupod_real *A, const quadrupod_real *wrench, quadrupod_real
     *completed);
@@ -262,9 +267,9 @@ size_t quadrupod_complete_acceleration_batch(const quadrupod_model *model, size_
     quadrupod_real *X, const quadrupod_real *V, const quadrupod_real *A, const quadrupod_real
     *wrench, quadrupod_real *completed, int *status);
 
-/* Force, then moment, of each leg on the platform at its platform joint, base axes. 1245 mul, 885
-   add, 17 div, 16 sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW,
-   or NULL). Out: forces (5 x 6). */
+/* Force and moment of each leg on the platform at its platform joint, base axes. The actuators
+   give the forces of inverse_dynamics. 1245 mul, 885 add, 17 div, 16 sqrt, 0 trig; inverse
+   dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (5 x 6). */
 int quadrupod_leg_reactions(const quadrupod_model *model, const quadrupod_real *X, const
     quadrupod_real *V, const quadrupod_real *A, const quadrupod_real *wrench, quadrupod_real
     *forces);
@@ -272,51 +277,106 @@ size_t quadrupod_leg_reactions_batch(const quadrupod_model *model, size_t n, con
     *X, const quadrupod_real *V, const quadrupod_real *A, const quadrupod_real *wrench,
     quadrupod_real *forces, int *status);
 
-/* Kinetic and potential energy; the latter is zero at the base origin. In: X (NQ), V (NV). Out:
-   kinetic (1), potential (1). */
+/* Kinetic and potential energy [J]; the latter is zero at the base origin. In: X (NQ), V (NV).
+   Out: kinetic (1), potential (1). */
 int quadrupod_energy(const quadrupod_model *model, const quadrupod_real *X, const quadrupod_real
     *V, quadrupod_real *kinetic, quadrupod_real *potential);
 size_t quadrupod_energy_batch(const quadrupod_model *model, size_t n, const quadrupod_real *X,
     const quadrupod_real *V, quadrupod_real *kinetic, quadrupod_real *potential, int *status);
 
-/* X at which the driven joints stand at q_actuated, by Gauss-Newton from X0; extra coordinates
-   that the drives do not determine stay. In: q_actuated (NU), X0 (NQ). Out: X (NQ). */
-int quadrupod_forward_kinematics(const quadrupod_model *model, const quadrupod_real *q_actuated,
-    const quadrupod_real *X0, quadrupod_real *X);
-size_t quadrupod_forward_kinematics_batch(const quadrupod_model *model, size_t n, const
-    quadrupod_real *q_actuated, const quadrupod_real *X0, quadrupod_real *X, int *status);
-
-/* Singular values of H in descending order, moment rows divided by the rms distance of the
-   platform points from their centroid; for every leg the least tested pivot as a fraction of its
-   scale. 470 mul, 324 add, 12 div, 27 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+/* How far a pose is from singularities: singular values of H, rows of moments divided by a
+   length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
+   distance of the platform points from their centroid, or where they coincide the rms size of the
+   legs. 470 mul, 324 add, 12 div, 27 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
    sigma (4), legs (5). */
 int quadrupod_condition(const quadrupod_model *model, const quadrupod_real *X, quadrupod_real
     *sigma, quadrupod_real *legs);
 size_t quadrupod_condition_batch(const quadrupod_model *model, size_t n, const quadrupod_real *X,
     quadrupod_real *sigma, quadrupod_real *legs, int *status);
 
-/* The same of [H Hk], which inverse dynamics solves. 470 mul, 324 add, 12 div, 27 sqrt, 0 trig;
-   the singular values apart. In: X (NQ). Out: sigma (6), legs (5). */
+/* The same with the singular values of [H Hk], which inverse dynamics solves. The length is the
+   rms distance of the platform points from their centroid, or where they coincide the rms size of
+   the legs. 470 mul, 324 add, 12 div, 27 sqrt, 0 trig; the singular values apart. In: X (NQ).
+   Out: sigma (6), legs (5). */
 int quadrupod_condition_constrained(const quadrupod_model *model, const quadrupod_real *X,
     quadrupod_real *sigma, quadrupod_real *legs);
 size_t quadrupod_condition_constrained_batch(const quadrupod_model *model, size_t n, const
     quadrupod_real *X, quadrupod_real *sigma, quadrupod_real *legs, int *status);
 
-/* The nearest pose on which the constraints hold. In: X (NQ). Out: projected (NQ). */
+/* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
+   that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
+   X0 (NQ). Out: X (NQ). */
+int quadrupod_forward_kinematics(const quadrupod_model *model, const quadrupod_real *q_actuated,
+    const quadrupod_real *X0, quadrupod_real *X);
+size_t quadrupod_forward_kinematics_batch(const quadrupod_model *model, size_t n, const
+    quadrupod_real *q_actuated, const quadrupod_real *X0, quadrupod_real *X, int *status);
+
+/* The nearest pose on which the constraints hold. By Gauss-Newton; impossible where none is
+   found. In: X (NQ). Out: projected (NQ). */
 int quadrupod_project(const quadrupod_model *model, const quadrupod_real *X, quadrupod_real
     *projected);
 size_t quadrupod_project_batch(const quadrupod_model *model, size_t n, const quadrupod_real *X,
     quadrupod_real *projected, int *status);
 
-/* base_R_platform; a quaternion need not be normalised. In: X (NQ). Out: R (3 x 3). */
+/* Power that friction takes, not negative; the rate of energy is power less this. In: X (NQ), V
+   (NV). Out: dissipation (1). */
+int quadrupod_dissipation(const quadrupod_model *model, const quadrupod_real *X, const
+    quadrupod_real *V, quadrupod_real *dissipation);
+size_t quadrupod_dissipation_batch(const quadrupod_model *model, size_t n, const quadrupod_real
+    *X, const quadrupod_real *V, quadrupod_real *dissipation, int *status);
+
+/* Generalised momentum M V. 1333 mul, 951 add, 17 div, 16 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+   momentum (NV). */
+int quadrupod_momentum(const quadrupod_model *model, const quadrupod_real *X, const quadrupod_real
+    *V, quadrupod_real *momentum);
+size_t quadrupod_momentum_batch(const quadrupod_model *model, size_t n, const quadrupod_real *X,
+    const quadrupod_real *V, quadrupod_real *momentum, int *status);
+
+/* Displacements of the actuated joints, in the order of tau. 135 mul, 100 add, 10 div, 10 sqrt,
+   10 trig. In: X (NQ). Out: q (NU). */
+int quadrupod_actuator_positions(const quadrupod_model *model, const quadrupod_real *X,
+    quadrupod_real *q);
+size_t quadrupod_actuator_positions_batch(const quadrupod_model *model, size_t n, const
+    quadrupod_real *X, quadrupod_real *q, int *status);
+
+/* Rates of the actuated joints, in the order of tau. 552 mul, 344 add, 17 div, 16 sqrt, 0 trig.
+   In: X (NQ), V (NV). Out: rates (NU). */
+int quadrupod_actuator_rates(const quadrupod_model *model, const quadrupod_real *X, const
+    quadrupod_real *V, quadrupod_real *rates);
+size_t quadrupod_actuator_rates_batch(const quadrupod_model *model, size_t n, const quadrupod_real
+    *X, const quadrupod_real *V, quadrupod_real *rates, int *status);
+
+/* Accelerations of the actuated joints, in the order of tau. 831 mul, 532 add, 17 div, 16 sqrt, 0
+   trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
+int quadrupod_actuator_accelerations(const quadrupod_model *model, const quadrupod_real *X, const
+    quadrupod_real *V, const quadrupod_real *A, quadrupod_real *accelerations);
+size_t quadrupod_actuator_accelerations_batch(const quadrupod_model *model, size_t n, const
+    quadrupod_real *X, const quadrupod_real *V, const quadrupod_real *A, quadrupod_real
+    *accelerations, int *status);
+
+/* Power that actuators give to the mechanism: tau times their rates. In: X (NQ), V (NV), tau
+   (NU). Out: power (1). */
+int quadrupod_power(const quadrupod_model *model, const quadrupod_real *X, const quadrupod_real
+    *V, const quadrupod_real *tau, quadrupod_real *power);
+size_t quadrupod_power_batch(const quadrupod_model *model, size_t n, const quadrupod_real *X,
+    const quadrupod_real *V, const quadrupod_real *tau, quadrupod_real *power, int *status);
+
+/* base_R_platform at X; a quaternion need not be normalised. Impossible where the quaternion is
+   zero or its squared length overflows. In: X (NQ). Out: R (3 x 3). */
 int quadrupod_rotation(const quadrupod_real *X, quadrupod_real *R);
 size_t quadrupod_rotation_batch(size_t n, const quadrupod_real *X, quadrupod_real *R, int *status);
 
-/* X of the platform at origin t with rotation matrix R. INVALID where R has not orthonormal rows,
-   to 1e-06 (float: 1e-5), and determinant +1. In: t (3), R (3 x 3). Out: X (NQ). */
+/* X of the platform at origin t with rotation matrix R; extra coordinates zero. INVALID where R
+   has not orthonormal rows, to 1e-06 (float: 1e-5), and determinant +1. In: t (3), R (3 x 3).
+   Out: X (NQ). */
 int quadrupod_pose(const quadrupod_real *t, const quadrupod_real *R, quadrupod_real *X);
 size_t quadrupod_pose_batch(size_t n, const quadrupod_real *t, const quadrupod_real *R,
     quadrupod_real *X, int *status);
+
+/* Rate of X at the velocity V. In: X (NQ), V (NV). Out: X_dot (NQ). */
+int quadrupod_X_dot(const quadrupod_real *X, const quadrupod_real *V, quadrupod_real *X_dot);
+size_t quadrupod_X_dot_batch(size_t n, const quadrupod_real *X, const quadrupod_real *V,
+    quadrupod_real *X_dot, int *status);
 
 /* X from roll, pitch, yaw about the fixed axes x, y, z, in that order. In: t (3), rpy (3). Out: X
    (NQ). */
@@ -324,10 +384,25 @@ int quadrupod_pose_from_rpy(const quadrupod_real *t, const quadrupod_real *rpy, 
 size_t quadrupod_pose_from_rpy_batch(size_t n, const quadrupod_real *t, const quadrupod_real *rpy,
     quadrupod_real *X, int *status);
 
-/* Rate of X at the velocity V. In: X (NQ), V (NV). Out: X_dot (NQ). */
-int quadrupod_X_dot(const quadrupod_real *X, const quadrupod_real *V, quadrupod_real *X_dot);
-size_t quadrupod_X_dot_batch(size_t n, const quadrupod_real *X, const quadrupod_real *V,
-    quadrupod_real *X_dot, int *status);
+/* X moved by a displacement: (t + d, exp([phi]) R, y + dy) of step = (d, phi, dy). In: X (NQ),
+   step (NV). Out: X_moved (NQ). */
+int quadrupod_retract(const quadrupod_real *X, const quadrupod_real *step, quadrupod_real
+    *X_moved);
+size_t quadrupod_retract_batch(size_t n, const quadrupod_real *X, const quadrupod_real *step,
+    quadrupod_real *X_moved, int *status);
+
+/* The displacement from X0 to X1, the inverse of retract; rotations the shorter way. In: X0 (NQ),
+   X1 (NQ). Out: step (NV). */
+int quadrupod_difference(const quadrupod_real *X0, const quadrupod_real *X1, quadrupod_real *step);
+size_t quadrupod_difference_batch(size_t n, const quadrupod_real *X0, const quadrupod_real *X1,
+    quadrupod_real *step, int *status);
+
+/* X0 moved by s times the displacement to X1: straight on, turning about one axis. In: X0 (NQ),
+   X1 (NQ), s (1). Out: X (NQ). */
+int quadrupod_interpolate(const quadrupod_real *X0, const quadrupod_real *X1, const quadrupod_real
+    *s, quadrupod_real *X);
+size_t quadrupod_interpolate_batch(size_t n, const quadrupod_real *X0, const quadrupod_real *X1,
+    const quadrupod_real *s, quadrupod_real *X, int *status);
 
 #ifdef __cplusplus
 }

@@ -144,6 +144,9 @@ typedef struct {
 extern const sixbar_params sixbar_default_params;
 extern const sixbar_real sixbar_HOME_X[SIXBAR_NQ];
 extern const sixbar_real sixbar_HOME_Q[SIXBAR_NJ];
+/* Places of the actuated joints in q, and their names, in the order of tau. */
+extern const size_t sixbar_ACTUATED[SIXBAR_NU];
+extern const char *const sixbar_ACTUATOR_NAMES[SIXBAR_NU];
 
 /* Prepare a model.  SIXBAR_INVALID, and the model is all NaN: a parameter is not finite or beyond
    1e+12; a mass is negative; an izz is negative (other entries of inertias do not
@@ -170,15 +173,8 @@ int sixbar_H(const sixbar_model *model, const sixbar_real *X, sixbar_real *H);
 size_t sixbar_H_batch(const sixbar_model *model, size_t n, const sixbar_real *X, sixbar_real *H,
     int *status);
 
-/* M, Z and H together, sharing the work. 275 mul, 193 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V
-   (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
-int sixbar_dynamics(const sixbar_model *model, const sixbar_real *X, const sixbar_real *V,
-    sixbar_real *M, sixbar_real *Z, sixbar_real *H);
-size_t sixbar_dynamics_batch(const sixbar_model *model, size_t n, const sixbar_real *X, const
-    sixbar_real *V, sixbar_real *M, sixbar_real *Z, sixbar_real *H, int *status);
-
-/* Displacements q of all joints, on the assembly branch of home. 62 mul, 32 add, 2 div, 2 sqrt, 4
-   trig. In: X (NQ). Out: q (NJ). */
+/* Displacements q of all joints. They are those of the assembly branch of home. 62 mul, 32 add, 2
+   div, 2 sqrt, 4 trig. In: X (NQ). Out: q (NJ). */
 int sixbar_inverse_kinematics(const sixbar_model *model, const sixbar_real *X, sixbar_real *q);
 size_t sixbar_inverse_kinematics_batch(const sixbar_model *model, size_t n, const sixbar_real *X,
     sixbar_real *q, int *status);
@@ -196,6 +192,13 @@ int sixbar_joint_accelerations(const sixbar_model *model, const sixbar_real *X, 
     *V, const sixbar_real *A, sixbar_real *accelerations);
 size_t sixbar_joint_accelerations_batch(const sixbar_model *model, size_t n, const sixbar_real *X,
     const sixbar_real *V, const sixbar_real *A, sixbar_real *accelerations, int *status);
+
+/* M, Z and H together, sharing the work. 275 mul, 193 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V
+   (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
+int sixbar_dynamics(const sixbar_model *model, const sixbar_real *X, const sixbar_real *V,
+    sixbar_real *M, sixbar_real *Z, sixbar_real *H);
+size_t sixbar_dynamics_batch(const sixbar_model *model, size_t n, const sixbar_real *X, const
+    sixbar_real *V, sixbar_real *M, sixbar_real *Z, sixbar_real *H, int *status);
 
 /* Actuator forces tau for the acceleration A, by Eq. 3. 232 mul, 147 add, 4 div, 2 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
@@ -215,52 +218,97 @@ size_t sixbar_forward_dynamics_batch(const sixbar_model *model, size_t n, const 
     const sixbar_real *V, const sixbar_real *tau, const sixbar_real *wrench, sixbar_real *A, int
     *status);
 
-/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
-   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
+/* A with the entries of passive extra coordinates that the others allow. It is A: there are no
+   passive extra coordinates, whose accelerations would follow. In: X (NQ), V (NV), A (NV), wrench
+   (NW, or NULL). Out: completed (NV). */
 int sixbar_complete_acceleration(const sixbar_model *model, const sixbar_real *X, const
     sixbar_real *V, const sixbar_real *A, const sixbar_real *wrench, sixbar_real *completed);
 size_t sixbar_complete_acceleration_batch(const sixbar_model *model, size_t n, const sixbar_real
     *X, const sixbar_real *V, const sixbar_real *A, const sixbar_real *wrench, sixbar_real
     *completed, int *status);
 
-/* Force of each leg on the platform at its platform joint, base axes. 208 mul, 122 add, 4 div, 2
-   sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
-   forces (2 x 3). */
+/* Force of each leg on the platform at its platform joint, base axes. The actuators give the
+   forces of inverse_dynamics. 208 mul, 122 add, 4 div, 2 sqrt, 0 trig; inverse dynamics apart.
+   In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (2 x 3). */
 int sixbar_leg_reactions(const sixbar_model *model, const sixbar_real *X, const sixbar_real *V,
     const sixbar_real *A, const sixbar_real *wrench, sixbar_real *forces);
 size_t sixbar_leg_reactions_batch(const sixbar_model *model, size_t n, const sixbar_real *X, const
     sixbar_real *V, const sixbar_real *A, const sixbar_real *wrench, sixbar_real *forces, int
     *status);
 
-/* Kinetic and potential energy; the latter is zero at the base origin. In: X (NQ), V (NV). Out:
-   kinetic (1), potential (1). */
+/* Kinetic and potential energy [J]; the latter is zero at the base origin. In: X (NQ), V (NV).
+   Out: kinetic (1), potential (1). */
 int sixbar_energy(const sixbar_model *model, const sixbar_real *X, const sixbar_real *V,
     sixbar_real *kinetic, sixbar_real *potential);
 size_t sixbar_energy_batch(const sixbar_model *model, size_t n, const sixbar_real *X, const
     sixbar_real *V, sixbar_real *kinetic, sixbar_real *potential, int *status);
 
-/* X at which the driven joints stand at q_actuated, by Gauss-Newton from X0; extra coordinates
-   that the drives do not determine stay. In: q_actuated (NU), X0 (NQ). Out: X (NQ). */
-int sixbar_forward_kinematics(const sixbar_model *model, const sixbar_real *q_actuated, const
-    sixbar_real *X0, sixbar_real *X);
-size_t sixbar_forward_kinematics_batch(const sixbar_model *model, size_t n, const sixbar_real
-    *q_actuated, const sixbar_real *X0, sixbar_real *X, int *status);
-
-/* Singular values of H in descending order, moment rows divided by the rms distance of the
-   platform points from their centroid; for every leg the least tested pivot as a fraction of its
-   scale. 114 mul, 61 add, 4 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
-   sigma (3), legs (2). */
+/* How far a pose is from singularities: singular values of H, rows of moments divided by a
+   length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
+   distance of the platform points from their centroid, or where they coincide the rms size of the
+   legs. 114 mul, 61 add, 4 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
+   (3), legs (2). */
 int sixbar_condition(const sixbar_model *model, const sixbar_real *X, sixbar_real *sigma,
     sixbar_real *legs);
 size_t sixbar_condition_batch(const sixbar_model *model, size_t n, const sixbar_real *X,
     sixbar_real *sigma, sixbar_real *legs, int *status);
 
-/* base_R_platform; a quaternion need not be normalised. In: X (NQ). Out: R (2 x 2). */
+/* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
+   that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
+   X0 (NQ). Out: X (NQ). */
+int sixbar_forward_kinematics(const sixbar_model *model, const sixbar_real *q_actuated, const
+    sixbar_real *X0, sixbar_real *X);
+size_t sixbar_forward_kinematics_batch(const sixbar_model *model, size_t n, const sixbar_real
+    *q_actuated, const sixbar_real *X0, sixbar_real *X, int *status);
+
+/* Power that friction takes, not negative; the rate of energy is power less this. In: X (NQ), V
+   (NV). Out: dissipation (1). */
+int sixbar_dissipation(const sixbar_model *model, const sixbar_real *X, const sixbar_real *V,
+    sixbar_real *dissipation);
+size_t sixbar_dissipation_batch(const sixbar_model *model, size_t n, const sixbar_real *X, const
+    sixbar_real *V, sixbar_real *dissipation, int *status);
+
+/* Generalised momentum M V. 148 mul, 107 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+   momentum (NV). */
+int sixbar_momentum(const sixbar_model *model, const sixbar_real *X, const sixbar_real *V,
+    sixbar_real *momentum);
+size_t sixbar_momentum_batch(const sixbar_model *model, size_t n, const sixbar_real *X, const
+    sixbar_real *V, sixbar_real *momentum, int *status);
+
+/* Displacements of the actuated joints, in the order of tau. 62 mul, 32 add, 2 div, 2 sqrt, 4
+   trig. In: X (NQ). Out: q (NU). */
+int sixbar_actuator_positions(const sixbar_model *model, const sixbar_real *X, sixbar_real *q);
+size_t sixbar_actuator_positions_batch(const sixbar_model *model, size_t n, const sixbar_real *X,
+    sixbar_real *q, int *status);
+
+/* Rates of the actuated joints, in the order of tau. 106 mul, 56 add, 4 div, 2 sqrt, 0 trig. In:
+   X (NQ), V (NV). Out: rates (NU). */
+int sixbar_actuator_rates(const sixbar_model *model, const sixbar_real *X, const sixbar_real *V,
+    sixbar_real *rates);
+size_t sixbar_actuator_rates_batch(const sixbar_model *model, size_t n, const sixbar_real *X,
+    const sixbar_real *V, sixbar_real *rates, int *status);
+
+/* Accelerations of the actuated joints, in the order of tau. 144 mul, 78 add, 4 div, 2 sqrt, 0
+   trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
+int sixbar_actuator_accelerations(const sixbar_model *model, const sixbar_real *X, const
+    sixbar_real *V, const sixbar_real *A, sixbar_real *accelerations);
+size_t sixbar_actuator_accelerations_batch(const sixbar_model *model, size_t n, const sixbar_real
+    *X, const sixbar_real *V, const sixbar_real *A, sixbar_real *accelerations, int *status);
+
+/* Power that actuators give to the mechanism: tau times their rates. In: X (NQ), V (NV), tau
+   (NU). Out: power (1). */
+int sixbar_power(const sixbar_model *model, const sixbar_real *X, const sixbar_real *V, const
+    sixbar_real *tau, sixbar_real *power);
+size_t sixbar_power_batch(const sixbar_model *model, size_t n, const sixbar_real *X, const
+    sixbar_real *V, const sixbar_real *tau, sixbar_real *power, int *status);
+
+/* base_R_platform at X; a quaternion need not be normalised. In: X (NQ). Out: R (2 x 2). */
 int sixbar_rotation(const sixbar_real *X, sixbar_real *R);
 size_t sixbar_rotation_batch(size_t n, const sixbar_real *X, sixbar_real *R, int *status);
 
-/* X of the platform at origin t with rotation matrix R. INVALID where R has not orthonormal rows,
-   to 1e-06 (float: 1e-5), and determinant +1. In: t (2), R (2 x 2). Out: X (NQ). */
+/* X of the platform at origin t with rotation matrix R; extra coordinates zero. INVALID where R
+   has not orthonormal rows, to 1e-06 (float: 1e-5), and determinant +1. In: t (2), R (2 x 2).
+   Out: X (NQ). */
 int sixbar_pose(const sixbar_real *t, const sixbar_real *R, sixbar_real *X);
 size_t sixbar_pose_batch(size_t n, const sixbar_real *t, const sixbar_real *R, sixbar_real *X, int
     *status);
@@ -269,6 +317,25 @@ size_t sixbar_pose_batch(size_t n, const sixbar_real *t, const sixbar_real *R, s
 int sixbar_X_dot(const sixbar_real *X, const sixbar_real *V, sixbar_real *X_dot);
 size_t sixbar_X_dot_batch(size_t n, const sixbar_real *X, const sixbar_real *V, sixbar_real
     *X_dot, int *status);
+
+/* X moved by a displacement: (t + d, exp([phi]) R, y + dy) of step = (d, phi, dy). In: X (NQ),
+   step (NV). Out: X_moved (NQ). */
+int sixbar_retract(const sixbar_real *X, const sixbar_real *step, sixbar_real *X_moved);
+size_t sixbar_retract_batch(size_t n, const sixbar_real *X, const sixbar_real *step, sixbar_real
+    *X_moved, int *status);
+
+/* The displacement from X0 to X1, the inverse of retract; rotations the shorter way. In: X0 (NQ),
+   X1 (NQ). Out: step (NV). */
+int sixbar_difference(const sixbar_real *X0, const sixbar_real *X1, sixbar_real *step);
+size_t sixbar_difference_batch(size_t n, const sixbar_real *X0, const sixbar_real *X1, sixbar_real
+    *step, int *status);
+
+/* X0 moved by s times the displacement to X1: straight on, turning about one axis. In: X0 (NQ),
+   X1 (NQ), s (1). Out: X (NQ). */
+int sixbar_interpolate(const sixbar_real *X0, const sixbar_real *X1, const sixbar_real *s,
+    sixbar_real *X);
+size_t sixbar_interpolate_batch(size_t n, const sixbar_real *X0, const sixbar_real *X1, const
+    sixbar_real *s, sixbar_real *X, int *status);
 
 #ifdef __cplusplus
 }

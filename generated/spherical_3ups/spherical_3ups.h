@@ -114,6 +114,9 @@ typedef struct {
 extern const spherical_3ups_params spherical_3ups_default_params;
 extern const spherical_3ups_real spherical_3ups_HOME_X[SPHERICAL_3UPS_NQ];
 extern const spherical_3ups_real spherical_3ups_HOME_Q[SPHERICAL_3UPS_NJ];
+/* Places of the actuated joints in q, and their names, in the order of tau. */
+extern const size_t spherical_3ups_ACTUATED[SPHERICAL_3UPS_NU];
+extern const char *const spherical_3ups_ACTUATOR_NAMES[SPHERICAL_3UPS_NU];
 
 /* Prepare a model.  SPHERICAL_3UPS_INVALID, and the model is all NaN: a parameter is not finite or beyond
    1e+12; a mass is negative; an inertia is not symmetric, or has a negative principal moment,
@@ -142,17 +145,8 @@ int spherical_3ups_H(const spherical_3ups_model *model, const spherical_3ups_rea
 size_t spherical_3ups_H_batch(const spherical_3ups_model *model, size_t n, const
     spherical_3ups_real *X, spherical_3ups_real *H, int *status);
 
-/* M, Z and H together, sharing the work. 816 mul, 567 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V
-   (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
-int spherical_3ups_dynamics(const spherical_3ups_model *model, const spherical_3ups_real *X, const
-    spherical_3ups_real *V, spherical_3ups_real *M, spherical_3ups_real *Z, spherical_3ups_real
-    *H);
-size_t spherical_3ups_dynamics_batch(const spherical_3ups_model *model, size_t n, const
-    spherical_3ups_real *X, const spherical_3ups_real *V, spherical_3ups_real *M,
-    spherical_3ups_real *Z, spherical_3ups_real *H, int *status);
-
-/* Displacements q of all joints, on the assembly branch of home. 81 mul, 60 add, 6 div, 6 sqrt, 6
-   trig. In: X (NQ). Out: q (NJ). */
+/* Displacements q of all joints. They are those of the assembly branch of home. 81 mul, 60 add, 6
+   div, 6 sqrt, 6 trig. In: X (NQ). Out: q (NJ). */
 int spherical_3ups_inverse_kinematics(const spherical_3ups_model *model, const spherical_3ups_real
     *X, spherical_3ups_real *q);
 size_t spherical_3ups_inverse_kinematics_batch(const spherical_3ups_model *model, size_t n, const
@@ -174,6 +168,15 @@ size_t spherical_3ups_joint_accelerations_batch(const spherical_3ups_model *mode
     spherical_3ups_real *X, const spherical_3ups_real *V, const spherical_3ups_real *A,
     spherical_3ups_real *accelerations, int *status);
 
+/* M, Z and H together, sharing the work. 816 mul, 567 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V
+   (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
+int spherical_3ups_dynamics(const spherical_3ups_model *model, const spherical_3ups_real *X, const
+    spherical_3ups_real *V, spherical_3ups_real *M, spherical_3ups_real *Z, spherical_3ups_real
+    *H);
+size_t spherical_3ups_dynamics_batch(const spherical_3ups_model *model, size_t n, const
+    spherical_3ups_real *X, const spherical_3ups_real *V, spherical_3ups_real *M,
+    spherical_3ups_real *Z, spherical_3ups_real *H, int *status);
+
 /* Actuator forces tau for the acceleration A, by Eq. 3. 567 mul, 414 add, 6 div, 6 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU). */
@@ -194,8 +197,9 @@ size_t spherical_3ups_forward_dynamics_batch(const spherical_3ups_model *model, 
     spherical_3ups_real *X, const spherical_3ups_real *V, const spherical_3ups_real *tau, const
     spherical_3ups_real *wrench, spherical_3ups_real *A, int *status);
 
-/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
-   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
+/* A with the entries of passive extra coordinates that the others allow. It is A: there are no
+   passive extra coordinates, whose accelerations would follow. In: X (NQ), V (NV), A (NV), wrench
+   (NW, or NULL). Out: completed (NV). */
 int spherical_3ups_complete_acceleration(const spherical_3ups_model *model, const
     spherical_3ups_real *X, const spherical_3ups_real *V, const spherical_3ups_real *A, const
     spherical_3ups_real *wrench, spherical_3ups_real *completed);
@@ -203,9 +207,9 @@ size_t spherical_3ups_complete_acceleration_batch(const spherical_3ups_model *mo
     const spherical_3ups_real *X, const spherical_3ups_real *V, const spherical_3ups_real *A,
     const spherical_3ups_real *wrench, spherical_3ups_real *completed, int *status);
 
-/* Force of each leg on the platform at its platform joint, base axes. 474 mul, 345 add, 6 div, 6
-   sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
-   forces (3 x 3). */
+/* Force of each leg on the platform at its platform joint, base axes. The actuators give the
+   forces of inverse_dynamics. 474 mul, 345 add, 6 div, 6 sqrt, 0 trig; inverse dynamics apart.
+   In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (3 x 3). */
 int spherical_3ups_leg_reactions(const spherical_3ups_model *model, const spherical_3ups_real *X,
     const spherical_3ups_real *V, const spherical_3ups_real *A, const spherical_3ups_real *wrench,
     spherical_3ups_real *forces);
@@ -213,42 +217,99 @@ size_t spherical_3ups_leg_reactions_batch(const spherical_3ups_model *model, siz
     spherical_3ups_real *X, const spherical_3ups_real *V, const spherical_3ups_real *A, const
     spherical_3ups_real *wrench, spherical_3ups_real *forces, int *status);
 
-/* Kinetic and potential energy; the latter is zero at the base origin. In: X (NQ), V (NV). Out:
-   kinetic (1), potential (1). */
+/* Kinetic and potential energy [J]; the latter is zero at the base origin. In: X (NQ), V (NV).
+   Out: kinetic (1), potential (1). */
 int spherical_3ups_energy(const spherical_3ups_model *model, const spherical_3ups_real *X, const
     spherical_3ups_real *V, spherical_3ups_real *kinetic, spherical_3ups_real *potential);
 size_t spherical_3ups_energy_batch(const spherical_3ups_model *model, size_t n, const
     spherical_3ups_real *X, const spherical_3ups_real *V, spherical_3ups_real *kinetic,
     spherical_3ups_real *potential, int *status);
 
-/* X at which the driven joints stand at q_actuated, by Gauss-Newton from X0; extra coordinates
-   that the drives do not determine stay. In: q_actuated (NU), X0 (NQ). Out: X (NQ). */
-int spherical_3ups_forward_kinematics(const spherical_3ups_model *model, const spherical_3ups_real
-    *q_actuated, const spherical_3ups_real *X0, spherical_3ups_real *X);
-size_t spherical_3ups_forward_kinematics_batch(const spherical_3ups_model *model, size_t n, const
-    spherical_3ups_real *q_actuated, const spherical_3ups_real *X0, spherical_3ups_real *X, int
-    *status);
-
-/* Singular values of H in descending order, moment rows divided by the rms distance of the
-   platform points from their centroid; for every leg the least tested pivot as a fraction of its
-   scale. 118 mul, 96 add, 3 div, 13 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+/* How far a pose is from singularities: singular values of H, rows of moments divided by a
+   length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
+   distance of the platform points from their centroid, or where they coincide the rms size of the
+   legs. 118 mul, 96 add, 3 div, 13 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
    sigma (3), legs (3). */
 int spherical_3ups_condition(const spherical_3ups_model *model, const spherical_3ups_real *X,
     spherical_3ups_real *sigma, spherical_3ups_real *legs);
 size_t spherical_3ups_condition_batch(const spherical_3ups_model *model, size_t n, const
     spherical_3ups_real *X, spherical_3ups_real *sigma, spherical_3ups_real *legs, int *status);
 
-/* base_R_platform; a quaternion need not be normalised. In: X (NQ). Out: R (3 x 3). */
+/* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
+   that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
+   X0 (NQ). Out: X (NQ). */
+int spherical_3ups_forward_kinematics(const spherical_3ups_model *model, const spherical_3ups_real
+    *q_actuated, const spherical_3ups_real *X0, spherical_3ups_real *X);
+size_t spherical_3ups_forward_kinematics_batch(const spherical_3ups_model *model, size_t n, const
+    spherical_3ups_real *q_actuated, const spherical_3ups_real *X0, spherical_3ups_real *X, int
+    *status);
+
+/* Power that friction takes, not negative; the rate of energy is power less this. In: X (NQ), V
+   (NV). Out: dissipation (1). */
+int spherical_3ups_dissipation(const spherical_3ups_model *model, const spherical_3ups_real *X,
+    const spherical_3ups_real *V, spherical_3ups_real *dissipation);
+size_t spherical_3ups_dissipation_batch(const spherical_3ups_model *model, size_t n, const
+    spherical_3ups_real *X, const spherical_3ups_real *V, spherical_3ups_real *dissipation, int
+    *status);
+
+/* Generalised momentum M V. 411 mul, 264 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+   momentum (NV). */
+int spherical_3ups_momentum(const spherical_3ups_model *model, const spherical_3ups_real *X, const
+    spherical_3ups_real *V, spherical_3ups_real *momentum);
+size_t spherical_3ups_momentum_batch(const spherical_3ups_model *model, size_t n, const
+    spherical_3ups_real *X, const spherical_3ups_real *V, spherical_3ups_real *momentum, int
+    *status);
+
+/* Displacements of the actuated joints, in the order of tau. 81 mul, 60 add, 6 div, 6 sqrt, 6
+   trig. In: X (NQ). Out: q (NU). */
+int spherical_3ups_actuator_positions(const spherical_3ups_model *model, const spherical_3ups_real
+    *X, spherical_3ups_real *q);
+size_t spherical_3ups_actuator_positions_batch(const spherical_3ups_model *model, size_t n, const
+    spherical_3ups_real *X, spherical_3ups_real *q, int *status);
+
+/* Rates of the actuated joints, in the order of tau. 171 mul, 105 add, 6 div, 6 sqrt, 0 trig. In:
+   X (NQ), V (NV). Out: rates (NU). */
+int spherical_3ups_actuator_rates(const spherical_3ups_model *model, const spherical_3ups_real *X,
+    const spherical_3ups_real *V, spherical_3ups_real *rates);
+size_t spherical_3ups_actuator_rates_batch(const spherical_3ups_model *model, size_t n, const
+    spherical_3ups_real *X, const spherical_3ups_real *V, spherical_3ups_real *rates, int *status);
+
+/* Accelerations of the actuated joints, in the order of tau. 282 mul, 168 add, 6 div, 6 sqrt, 0
+   trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
+int spherical_3ups_actuator_accelerations(const spherical_3ups_model *model, const
+    spherical_3ups_real *X, const spherical_3ups_real *V, const spherical_3ups_real *A,
+    spherical_3ups_real *accelerations);
+size_t spherical_3ups_actuator_accelerations_batch(const spherical_3ups_model *model, size_t n,
+    const spherical_3ups_real *X, const spherical_3ups_real *V, const spherical_3ups_real *A,
+    spherical_3ups_real *accelerations, int *status);
+
+/* Power that actuators give to the mechanism: tau times their rates. In: X (NQ), V (NV), tau
+   (NU). Out: power (1). */
+int spherical_3ups_power(const spherical_3ups_model *model, const spherical_3ups_real *X, const
+    spherical_3ups_real *V, const spherical_3ups_real *tau, spherical_3ups_real *power);
+size_t spherical_3ups_power_batch(const spherical_3ups_model *model, size_t n, const
+    spherical_3ups_real *X, const spherical_3ups_real *V, const spherical_3ups_real *tau,
+    spherical_3ups_real *power, int *status);
+
+/* base_R_platform at X; a quaternion need not be normalised. Impossible where the quaternion is
+   zero or its squared length overflows. In: X (NQ). Out: R (3 x 3). */
 int spherical_3ups_rotation(const spherical_3ups_real *X, spherical_3ups_real *R);
 size_t spherical_3ups_rotation_batch(size_t n, const spherical_3ups_real *X, spherical_3ups_real
     *R, int *status);
 
-/* X of the platform at origin t with rotation matrix R. INVALID where R has not orthonormal rows,
-   to 1e-06 (float: 1e-5), and determinant +1. In: t (0, or NULL), R (3 x 3). Out: X (NQ). */
+/* X of the platform at origin t with rotation matrix R; extra coordinates zero. INVALID where R
+   has not orthonormal rows, to 1e-06 (float: 1e-5), and determinant +1. In: t (0, or NULL), R (3
+   x 3). Out: X (NQ). */
 int spherical_3ups_pose(const spherical_3ups_real *t, const spherical_3ups_real *R,
     spherical_3ups_real *X);
 size_t spherical_3ups_pose_batch(size_t n, const spherical_3ups_real *t, const spherical_3ups_real
     *R, spherical_3ups_real *X, int *status);
+
+/* Rate of X at the velocity V. In: X (NQ), V (NV). Out: X_dot (NQ). */
+int spherical_3ups_X_dot(const spherical_3ups_real *X, const spherical_3ups_real *V,
+    spherical_3ups_real *X_dot);
+size_t spherical_3ups_X_dot_batch(size_t n, const spherical_3ups_real *X, const
+    spherical_3ups_real *V, spherical_3ups_real *X_dot, int *status);
 
 /* X from roll, pitch, yaw about the fixed axes x, y, z, in that order. In: t (0, or NULL), rpy
    (3). Out: X (NQ). */
@@ -257,11 +318,26 @@ int spherical_3ups_pose_from_rpy(const spherical_3ups_real *t, const spherical_3
 size_t spherical_3ups_pose_from_rpy_batch(size_t n, const spherical_3ups_real *t, const
     spherical_3ups_real *rpy, spherical_3ups_real *X, int *status);
 
-/* Rate of X at the velocity V. In: X (NQ), V (NV). Out: X_dot (NQ). */
-int spherical_3ups_X_dot(const spherical_3ups_real *X, const spherical_3ups_real *V,
-    spherical_3ups_real *X_dot);
-size_t spherical_3ups_X_dot_batch(size_t n, const spherical_3ups_real *X, const
-    spherical_3ups_real *V, spherical_3ups_real *X_dot, int *status);
+/* X moved by a displacement: (t + d, exp([phi]) R, y + dy) of step = (d, phi, dy). In: X (NQ),
+   step (NV). Out: X_moved (NQ). */
+int spherical_3ups_retract(const spherical_3ups_real *X, const spherical_3ups_real *step,
+    spherical_3ups_real *X_moved);
+size_t spherical_3ups_retract_batch(size_t n, const spherical_3ups_real *X, const
+    spherical_3ups_real *step, spherical_3ups_real *X_moved, int *status);
+
+/* The displacement from X0 to X1, the inverse of retract; rotations the shorter way. In: X0 (NQ),
+   X1 (NQ). Out: step (NV). */
+int spherical_3ups_difference(const spherical_3ups_real *X0, const spherical_3ups_real *X1,
+    spherical_3ups_real *step);
+size_t spherical_3ups_difference_batch(size_t n, const spherical_3ups_real *X0, const
+    spherical_3ups_real *X1, spherical_3ups_real *step, int *status);
+
+/* X0 moved by s times the displacement to X1: straight on, turning about one axis. In: X0 (NQ),
+   X1 (NQ), s (1). Out: X (NQ). */
+int spherical_3ups_interpolate(const spherical_3ups_real *X0, const spherical_3ups_real *X1, const
+    spherical_3ups_real *s, spherical_3ups_real *X);
+size_t spherical_3ups_interpolate_batch(size_t n, const spherical_3ups_real *X0, const
+    spherical_3ups_real *X1, const spherical_3ups_real *s, spherical_3ups_real *X, int *status);
 
 #ifdef __cplusplus
 }

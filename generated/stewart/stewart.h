@@ -110,6 +110,9 @@ typedef struct {
 extern const stewart_params stewart_default_params;
 extern const stewart_real stewart_HOME_X[STEWART_NQ];
 extern const stewart_real stewart_HOME_Q[STEWART_NJ];
+/* Places of the actuated joints in q, and their names, in the order of tau. */
+extern const size_t stewart_ACTUATED[STEWART_NU];
+extern const char *const stewart_ACTUATOR_NAMES[STEWART_NU];
 
 /* Prepare a model.  STEWART_INVALID, and the model is all NaN: a parameter is not finite or beyond
    1e+12; a mass is negative; an inertia is not symmetric, or has a negative principal moment,
@@ -136,15 +139,8 @@ int stewart_H(const stewart_model *model, const stewart_real *X, stewart_real *H
 size_t stewart_H_batch(const stewart_model *model, size_t n, const stewart_real *X, stewart_real
     *H, int *status);
 
-/* M, Z and H together, sharing the work. 1590 mul, 1248 add, 12 div, 12 sqrt, 0 trig. In: X (NQ),
-   V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
-int stewart_dynamics(const stewart_model *model, const stewart_real *X, const stewart_real *V,
-    stewart_real *M, stewart_real *Z, stewart_real *H);
-size_t stewart_dynamics_batch(const stewart_model *model, size_t n, const stewart_real *X, const
-    stewart_real *V, stewart_real *M, stewart_real *Z, stewart_real *H, int *status);
-
-/* Displacements q of all joints, on the assembly branch of home. 162 mul, 120 add, 12 div, 12
-   sqrt, 12 trig. In: X (NQ). Out: q (NJ). */
+/* Displacements q of all joints. They are those of the assembly branch of home. 162 mul, 120 add,
+   12 div, 12 sqrt, 12 trig. In: X (NQ). Out: q (NJ). */
 int stewart_inverse_kinematics(const stewart_model *model, const stewart_real *X, stewart_real *q);
 size_t stewart_inverse_kinematics_batch(const stewart_model *model, size_t n, const stewart_real
     *X, stewart_real *q, int *status);
@@ -162,6 +158,13 @@ int stewart_joint_accelerations(const stewart_model *model, const stewart_real *
     stewart_real *V, const stewart_real *A, stewart_real *accelerations);
 size_t stewart_joint_accelerations_batch(const stewart_model *model, size_t n, const stewart_real
     *X, const stewart_real *V, const stewart_real *A, stewart_real *accelerations, int *status);
+
+/* M, Z and H together, sharing the work. 1590 mul, 1248 add, 12 div, 12 sqrt, 0 trig. In: X (NQ),
+   V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
+int stewart_dynamics(const stewart_model *model, const stewart_real *X, const stewart_real *V,
+    stewart_real *M, stewart_real *Z, stewart_real *H);
+size_t stewart_dynamics_batch(const stewart_model *model, size_t n, const stewart_real *X, const
+    stewart_real *V, stewart_real *M, stewart_real *Z, stewart_real *H, int *status);
 
 /* Actuator forces tau for the acceleration A, by Eq. 3. 1095 mul, 861 add, 12 div, 12 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or
@@ -181,55 +184,107 @@ size_t stewart_forward_dynamics_batch(const stewart_model *model, size_t n, cons
     const stewart_real *V, const stewart_real *tau, const stewart_real *wrench, stewart_real *A,
     int *status);
 
-/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
-   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
+/* A with the entries of passive extra coordinates that the others allow. It is A: there are no
+   passive extra coordinates, whose accelerations would follow. In: X (NQ), V (NV), A (NV), wrench
+   (NW, or NULL). Out: completed (NV). */
 int stewart_complete_acceleration(const stewart_model *model, const stewart_real *X, const
     stewart_real *V, const stewart_real *A, const stewart_real *wrench, stewart_real *completed);
 size_t stewart_complete_acceleration_batch(const stewart_model *model, size_t n, const
     stewart_real *X, const stewart_real *V, const stewart_real *A, const stewart_real *wrench,
     stewart_real *completed, int *status);
 
-/* Force of each leg on the platform at its platform joint, base axes. 948 mul, 726 add, 12 div,
-   12 sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
-   forces (6 x 3). */
+/* Force of each leg on the platform at its platform joint, base axes. The actuators give the
+   forces of inverse_dynamics. 948 mul, 726 add, 12 div, 12 sqrt, 0 trig; inverse dynamics apart.
+   In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (6 x 3). */
 int stewart_leg_reactions(const stewart_model *model, const stewart_real *X, const stewart_real
     *V, const stewart_real *A, const stewart_real *wrench, stewart_real *forces);
 size_t stewart_leg_reactions_batch(const stewart_model *model, size_t n, const stewart_real *X,
     const stewart_real *V, const stewart_real *A, const stewart_real *wrench, stewart_real
     *forces, int *status);
 
-/* Kinetic and potential energy; the latter is zero at the base origin. In: X (NQ), V (NV). Out:
-   kinetic (1), potential (1). */
+/* Kinetic and potential energy [J]; the latter is zero at the base origin. In: X (NQ), V (NV).
+   Out: kinetic (1), potential (1). */
 int stewart_energy(const stewart_model *model, const stewart_real *X, const stewart_real *V,
     stewart_real *kinetic, stewart_real *potential);
 size_t stewart_energy_batch(const stewart_model *model, size_t n, const stewart_real *X, const
     stewart_real *V, stewart_real *kinetic, stewart_real *potential, int *status);
 
-/* X at which the driven joints stand at q_actuated, by Gauss-Newton from X0; extra coordinates
-   that the drives do not determine stay. In: q_actuated (NU), X0 (NQ). Out: X (NQ). */
-int stewart_forward_kinematics(const stewart_model *model, const stewart_real *q_actuated, const
-    stewart_real *X0, stewart_real *X);
-size_t stewart_forward_kinematics_batch(const stewart_model *model, size_t n, const stewart_real
-    *q_actuated, const stewart_real *X0, stewart_real *X, int *status);
-
-/* Singular values of H in descending order, moment rows divided by the rms distance of the
-   platform points from their centroid; for every leg the least tested pivot as a fraction of its
-   scale. 235 mul, 192 add, 6 div, 25 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+/* How far a pose is from singularities: singular values of H, rows of moments divided by a
+   length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
+   distance of the platform points from their centroid, or where they coincide the rms size of the
+   legs. 235 mul, 192 add, 6 div, 25 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
    sigma (6), legs (6). */
 int stewart_condition(const stewart_model *model, const stewart_real *X, stewart_real *sigma,
     stewart_real *legs);
 size_t stewart_condition_batch(const stewart_model *model, size_t n, const stewart_real *X,
     stewart_real *sigma, stewart_real *legs, int *status);
 
-/* base_R_platform; a quaternion need not be normalised. In: X (NQ). Out: R (3 x 3). */
+/* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
+   that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
+   X0 (NQ). Out: X (NQ). */
+int stewart_forward_kinematics(const stewart_model *model, const stewart_real *q_actuated, const
+    stewart_real *X0, stewart_real *X);
+size_t stewart_forward_kinematics_batch(const stewart_model *model, size_t n, const stewart_real
+    *q_actuated, const stewart_real *X0, stewart_real *X, int *status);
+
+/* Power that friction takes, not negative; the rate of energy is power less this. In: X (NQ), V
+   (NV). Out: dissipation (1). */
+int stewart_dissipation(const stewart_model *model, const stewart_real *X, const stewart_real *V,
+    stewart_real *dissipation);
+size_t stewart_dissipation_batch(const stewart_model *model, size_t n, const stewart_real *X,
+    const stewart_real *V, stewart_real *dissipation, int *status);
+
+/* Generalised momentum M V. 795 mul, 609 add, 12 div, 12 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+   momentum (NV). */
+int stewart_momentum(const stewart_model *model, const stewart_real *X, const stewart_real *V,
+    stewart_real *momentum);
+size_t stewart_momentum_batch(const stewart_model *model, size_t n, const stewart_real *X, const
+    stewart_real *V, stewart_real *momentum, int *status);
+
+/* Displacements of the actuated joints, in the order of tau. 162 mul, 120 add, 12 div, 12 sqrt,
+   12 trig. In: X (NQ). Out: q (NU). */
+int stewart_actuator_positions(const stewart_model *model, const stewart_real *X, stewart_real *q);
+size_t stewart_actuator_positions_batch(const stewart_model *model, size_t n, const stewart_real
+    *X, stewart_real *q, int *status);
+
+/* Rates of the actuated joints, in the order of tau. 342 mul, 228 add, 12 div, 12 sqrt, 0 trig.
+   In: X (NQ), V (NV). Out: rates (NU). */
+int stewart_actuator_rates(const stewart_model *model, const stewart_real *X, const stewart_real
+    *V, stewart_real *rates);
+size_t stewart_actuator_rates_batch(const stewart_model *model, size_t n, const stewart_real *X,
+    const stewart_real *V, stewart_real *rates, int *status);
+
+/* Accelerations of the actuated joints, in the order of tau. 564 mul, 372 add, 12 div, 12 sqrt, 0
+   trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
+int stewart_actuator_accelerations(const stewart_model *model, const stewart_real *X, const
+    stewart_real *V, const stewart_real *A, stewart_real *accelerations);
+size_t stewart_actuator_accelerations_batch(const stewart_model *model, size_t n, const
+    stewart_real *X, const stewart_real *V, const stewart_real *A, stewart_real *accelerations,
+    int *status);
+
+/* Power that actuators give to the mechanism: tau times their rates. In: X (NQ), V (NV), tau
+   (NU). Out: power (1). */
+int stewart_power(const stewart_model *model, const stewart_real *X, const stewart_real *V, const
+    stewart_real *tau, stewart_real *power);
+size_t stewart_power_batch(const stewart_model *model, size_t n, const stewart_real *X, const
+    stewart_real *V, const stewart_real *tau, stewart_real *power, int *status);
+
+/* base_R_platform at X; a quaternion need not be normalised. Impossible where the quaternion is
+   zero or its squared length overflows. In: X (NQ). Out: R (3 x 3). */
 int stewart_rotation(const stewart_real *X, stewart_real *R);
 size_t stewart_rotation_batch(size_t n, const stewart_real *X, stewart_real *R, int *status);
 
-/* X of the platform at origin t with rotation matrix R. INVALID where R has not orthonormal rows,
-   to 1e-06 (float: 1e-5), and determinant +1. In: t (3), R (3 x 3). Out: X (NQ). */
+/* X of the platform at origin t with rotation matrix R; extra coordinates zero. INVALID where R
+   has not orthonormal rows, to 1e-06 (float: 1e-5), and determinant +1. In: t (3), R (3 x 3).
+   Out: X (NQ). */
 int stewart_pose(const stewart_real *t, const stewart_real *R, stewart_real *X);
 size_t stewart_pose_batch(size_t n, const stewart_real *t, const stewart_real *R, stewart_real *X,
     int *status);
+
+/* Rate of X at the velocity V. In: X (NQ), V (NV). Out: X_dot (NQ). */
+int stewart_X_dot(const stewart_real *X, const stewart_real *V, stewart_real *X_dot);
+size_t stewart_X_dot_batch(size_t n, const stewart_real *X, const stewart_real *V, stewart_real
+    *X_dot, int *status);
 
 /* X from roll, pitch, yaw about the fixed axes x, y, z, in that order. In: t (3), rpy (3). Out: X
    (NQ). */
@@ -237,10 +292,24 @@ int stewart_pose_from_rpy(const stewart_real *t, const stewart_real *rpy, stewar
 size_t stewart_pose_from_rpy_batch(size_t n, const stewart_real *t, const stewart_real *rpy,
     stewart_real *X, int *status);
 
-/* Rate of X at the velocity V. In: X (NQ), V (NV). Out: X_dot (NQ). */
-int stewart_X_dot(const stewart_real *X, const stewart_real *V, stewart_real *X_dot);
-size_t stewart_X_dot_batch(size_t n, const stewart_real *X, const stewart_real *V, stewart_real
-    *X_dot, int *status);
+/* X moved by a displacement: (t + d, exp([phi]) R, y + dy) of step = (d, phi, dy). In: X (NQ),
+   step (NV). Out: X_moved (NQ). */
+int stewart_retract(const stewart_real *X, const stewart_real *step, stewart_real *X_moved);
+size_t stewart_retract_batch(size_t n, const stewart_real *X, const stewart_real *step,
+    stewart_real *X_moved, int *status);
+
+/* The displacement from X0 to X1, the inverse of retract; rotations the shorter way. In: X0 (NQ),
+   X1 (NQ). Out: step (NV). */
+int stewart_difference(const stewart_real *X0, const stewart_real *X1, stewart_real *step);
+size_t stewart_difference_batch(size_t n, const stewart_real *X0, const stewart_real *X1,
+    stewart_real *step, int *status);
+
+/* X0 moved by s times the displacement to X1: straight on, turning about one axis. In: X0 (NQ),
+   X1 (NQ), s (1). Out: X (NQ). */
+int stewart_interpolate(const stewart_real *X0, const stewart_real *X1, const stewart_real *s,
+    stewart_real *X);
+size_t stewart_interpolate_batch(size_t n, const stewart_real *X0, const stewart_real *X1, const
+    stewart_real *s, stewart_real *X, int *status);
 
 #ifdef __cplusplus
 }

@@ -112,6 +112,9 @@ typedef struct {
 extern const stewart_7ups_params stewart_7ups_default_params;
 extern const stewart_7ups_real stewart_7ups_HOME_X[STEWART_7UPS_NQ];
 extern const stewart_7ups_real stewart_7ups_HOME_Q[STEWART_7UPS_NJ];
+/* Places of the actuated joints in q, and their names, in the order of tau. */
+extern const size_t stewart_7ups_ACTUATED[STEWART_7UPS_NU];
+extern const char *const stewart_7ups_ACTUATOR_NAMES[STEWART_7UPS_NU];
 
 /* Prepare a model.  STEWART_7UPS_INVALID, and the model is all NaN: a parameter is not finite or beyond
    1e+12; a mass is negative; an inertia is not symmetric, or has a negative principal moment,
@@ -140,16 +143,8 @@ int stewart_7ups_H(const stewart_7ups_model *model, const stewart_7ups_real *X, 
 size_t stewart_7ups_H_batch(const stewart_7ups_model *model, size_t n, const stewart_7ups_real *X,
     stewart_7ups_real *H, int *status);
 
-/* M, Z and H together, sharing the work. 1837 mul, 1440 add, 14 div, 14 sqrt, 0 trig. In: X (NQ),
-   V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
-int stewart_7ups_dynamics(const stewart_7ups_model *model, const stewart_7ups_real *X, const
-    stewart_7ups_real *V, stewart_7ups_real *M, stewart_7ups_real *Z, stewart_7ups_real *H);
-size_t stewart_7ups_dynamics_batch(const stewart_7ups_model *model, size_t n, const
-    stewart_7ups_real *X, const stewart_7ups_real *V, stewart_7ups_real *M, stewart_7ups_real *Z,
-    stewart_7ups_real *H, int *status);
-
-/* Displacements q of all joints, on the assembly branch of home. 189 mul, 140 add, 14 div, 14
-   sqrt, 14 trig. In: X (NQ). Out: q (NJ). */
+/* Displacements q of all joints. They are those of the assembly branch of home. 189 mul, 140 add,
+   14 div, 14 sqrt, 14 trig. In: X (NQ). Out: q (NJ). */
 int stewart_7ups_inverse_kinematics(const stewart_7ups_model *model, const stewart_7ups_real *X,
     stewart_7ups_real *q);
 size_t stewart_7ups_inverse_kinematics_batch(const stewart_7ups_model *model, size_t n, const
@@ -170,9 +165,17 @@ size_t stewart_7ups_joint_accelerations_batch(const stewart_7ups_model *model, s
     stewart_7ups_real *X, const stewart_7ups_real *V, const stewart_7ups_real *A,
     stewart_7ups_real *accelerations, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3, of least norm. 1262 mul, 991 add, 14 div,
-   14 sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench
-   (NW, or NULL). Out: tau (NU). */
+/* M, Z and H together, sharing the work. 1837 mul, 1440 add, 14 div, 14 sqrt, 0 trig. In: X (NQ),
+   V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
+int stewart_7ups_dynamics(const stewart_7ups_model *model, const stewart_7ups_real *X, const
+    stewart_7ups_real *V, stewart_7ups_real *M, stewart_7ups_real *Z, stewart_7ups_real *H);
+size_t stewart_7ups_dynamics_batch(const stewart_7ups_model *model, size_t n, const
+    stewart_7ups_real *X, const stewart_7ups_real *V, stewart_7ups_real *M, stewart_7ups_real *Z,
+    stewart_7ups_real *H, int *status);
+
+/* Actuator forces tau for the acceleration A, by Eq. 3. tau has the least norm. 1262 mul, 991
+   add, 14 div, 14 sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), A
+   (NV), wrench (NW, or NULL). Out: tau (NU). */
 int stewart_7ups_inverse_dynamics(const stewart_7ups_model *model, const stewart_7ups_real *X,
     const stewart_7ups_real *V, const stewart_7ups_real *A, const stewart_7ups_real *wrench,
     stewart_7ups_real *tau);
@@ -180,9 +183,9 @@ size_t stewart_7ups_inverse_dynamics_batch(const stewart_7ups_model *model, size
     stewart_7ups_real *X, const stewart_7ups_real *V, const stewart_7ups_real *A, const
     stewart_7ups_real *wrench, stewart_7ups_real *tau, int *status);
 
-/* Actuator forces tau of least sum of weights tau^2. 1262 mul, 991 add, 14 div, 14 sqrt, 0 trig;
-   the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL),
-   weights (NU, positive). Out: tau (NU). */
+/* Actuator forces tau for the acceleration A, by Eq. 3. tau has the least sum of weights tau^2.
+   1262 mul, 991 add, 14 div, 14 sqrt, 0 trig; the solution of the linear equations apart. In: X
+   (NQ), V (NV), A (NV), wrench (NW, or NULL), weights (NU, positive). Out: tau (NU). */
 int stewart_7ups_inverse_dynamics_weighted(const stewart_7ups_model *model, const
     stewart_7ups_real *X, const stewart_7ups_real *V, const stewart_7ups_real *A, const
     stewart_7ups_real *wrench, const stewart_7ups_real *weights, stewart_7ups_real *tau);
@@ -201,14 +204,9 @@ size_t stewart_7ups_forward_dynamics_batch(const stewart_7ups_model *model, size
     stewart_7ups_real *X, const stewart_7ups_real *V, const stewart_7ups_real *tau, const
     stewart_7ups_real *wrench, stewart_7ups_real *A, int *status);
 
-/* Orthonormal basis of the tau with H tau = 0. In: X (NQ). Out: basis (NU x 1). */
-int stewart_7ups_null_space(const stewart_7ups_model *model, const stewart_7ups_real *X,
-    stewart_7ups_real *basis);
-size_t stewart_7ups_null_space_batch(const stewart_7ups_model *model, size_t n, const
-    stewart_7ups_real *X, stewart_7ups_real *basis, int *status);
-
-/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
-   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
+/* A with the entries of passive extra coordinates that the others allow. It is A: there are no
+   passive extra coordinates, whose accelerations would follow. In: X (NQ), V (NV), A (NV), wrench
+   (NW, or NULL). Out: completed (NV). */
 int stewart_7ups_complete_acceleration(const stewart_7ups_model *model, const stewart_7ups_real
     *X, const stewart_7ups_real *V, const stewart_7ups_real *A, const stewart_7ups_real *wrench,
     stewart_7ups_real *completed);
@@ -216,9 +214,9 @@ size_t stewart_7ups_complete_acceleration_batch(const stewart_7ups_model *model,
     stewart_7ups_real *X, const stewart_7ups_real *V, const stewart_7ups_real *A, const
     stewart_7ups_real *wrench, stewart_7ups_real *completed, int *status);
 
-/* Force of each leg on the platform at its platform joint, base axes. 1106 mul, 847 add, 14 div,
-   14 sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
-   forces (7 x 3). */
+/* Force of each leg on the platform at its platform joint, base axes. The actuators give the
+   forces of inverse_dynamics. 1106 mul, 847 add, 14 div, 14 sqrt, 0 trig; inverse dynamics apart.
+   In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (7 x 3). */
 int stewart_7ups_leg_reactions(const stewart_7ups_model *model, const stewart_7ups_real *X, const
     stewart_7ups_real *V, const stewart_7ups_real *A, const stewart_7ups_real *wrench,
     stewart_7ups_real *forces);
@@ -226,41 +224,101 @@ size_t stewart_7ups_leg_reactions_batch(const stewart_7ups_model *model, size_t 
     stewart_7ups_real *X, const stewart_7ups_real *V, const stewart_7ups_real *A, const
     stewart_7ups_real *wrench, stewart_7ups_real *forces, int *status);
 
-/* Kinetic and potential energy; the latter is zero at the base origin. In: X (NQ), V (NV). Out:
-   kinetic (1), potential (1). */
+/* Kinetic and potential energy [J]; the latter is zero at the base origin. In: X (NQ), V (NV).
+   Out: kinetic (1), potential (1). */
 int stewart_7ups_energy(const stewart_7ups_model *model, const stewart_7ups_real *X, const
     stewart_7ups_real *V, stewart_7ups_real *kinetic, stewart_7ups_real *potential);
 size_t stewart_7ups_energy_batch(const stewart_7ups_model *model, size_t n, const
     stewart_7ups_real *X, const stewart_7ups_real *V, stewart_7ups_real *kinetic,
     stewart_7ups_real *potential, int *status);
 
-/* X at which the driven joints stand at q_actuated, by Gauss-Newton from X0; extra coordinates
-   that the drives do not determine stay. In: q_actuated (NU), X0 (NQ). Out: X (NQ). */
-int stewart_7ups_forward_kinematics(const stewart_7ups_model *model, const stewart_7ups_real
-    *q_actuated, const stewart_7ups_real *X0, stewart_7ups_real *X);
-size_t stewart_7ups_forward_kinematics_batch(const stewart_7ups_model *model, size_t n, const
-    stewart_7ups_real *q_actuated, const stewart_7ups_real *X0, stewart_7ups_real *X, int *status);
+/* Orthonormal basis of the tau with H tau = 0. In: X (NQ). Out: basis (NU x 1). */
+int stewart_7ups_null_space(const stewart_7ups_model *model, const stewart_7ups_real *X,
+    stewart_7ups_real *basis);
+size_t stewart_7ups_null_space_batch(const stewart_7ups_model *model, size_t n, const
+    stewart_7ups_real *X, stewart_7ups_real *basis, int *status);
 
-/* Singular values of H in descending order, moment rows divided by the rms distance of the
-   platform points from their centroid; for every leg the least tested pivot as a fraction of its
-   scale. 274 mul, 224 add, 7 div, 29 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+/* How far a pose is from singularities: singular values of H, rows of moments divided by a
+   length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
+   distance of the platform points from their centroid, or where they coincide the rms size of the
+   legs. 274 mul, 224 add, 7 div, 29 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
    sigma (6), legs (7). */
 int stewart_7ups_condition(const stewart_7ups_model *model, const stewart_7ups_real *X,
     stewart_7ups_real *sigma, stewart_7ups_real *legs);
 size_t stewart_7ups_condition_batch(const stewart_7ups_model *model, size_t n, const
     stewart_7ups_real *X, stewart_7ups_real *sigma, stewart_7ups_real *legs, int *status);
 
-/* base_R_platform; a quaternion need not be normalised. In: X (NQ). Out: R (3 x 3). */
+/* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
+   that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
+   X0 (NQ). Out: X (NQ). */
+int stewart_7ups_forward_kinematics(const stewart_7ups_model *model, const stewart_7ups_real
+    *q_actuated, const stewart_7ups_real *X0, stewart_7ups_real *X);
+size_t stewart_7ups_forward_kinematics_batch(const stewart_7ups_model *model, size_t n, const
+    stewart_7ups_real *q_actuated, const stewart_7ups_real *X0, stewart_7ups_real *X, int *status);
+
+/* Power that friction takes, not negative; the rate of energy is power less this. In: X (NQ), V
+   (NV). Out: dissipation (1). */
+int stewart_7ups_dissipation(const stewart_7ups_model *model, const stewart_7ups_real *X, const
+    stewart_7ups_real *V, stewart_7ups_real *dissipation);
+size_t stewart_7ups_dissipation_batch(const stewart_7ups_model *model, size_t n, const
+    stewart_7ups_real *X, const stewart_7ups_real *V, stewart_7ups_real *dissipation, int *status);
+
+/* Generalised momentum M V. 920 mul, 703 add, 14 div, 14 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+   momentum (NV). */
+int stewart_7ups_momentum(const stewart_7ups_model *model, const stewart_7ups_real *X, const
+    stewart_7ups_real *V, stewart_7ups_real *momentum);
+size_t stewart_7ups_momentum_batch(const stewart_7ups_model *model, size_t n, const
+    stewart_7ups_real *X, const stewart_7ups_real *V, stewart_7ups_real *momentum, int *status);
+
+/* Displacements of the actuated joints, in the order of tau. 189 mul, 140 add, 14 div, 14 sqrt,
+   14 trig. In: X (NQ). Out: q (NU). */
+int stewart_7ups_actuator_positions(const stewart_7ups_model *model, const stewart_7ups_real *X,
+    stewart_7ups_real *q);
+size_t stewart_7ups_actuator_positions_batch(const stewart_7ups_model *model, size_t n, const
+    stewart_7ups_real *X, stewart_7ups_real *q, int *status);
+
+/* Rates of the actuated joints, in the order of tau. 399 mul, 266 add, 14 div, 14 sqrt, 0 trig.
+   In: X (NQ), V (NV). Out: rates (NU). */
+int stewart_7ups_actuator_rates(const stewart_7ups_model *model, const stewart_7ups_real *X, const
+    stewart_7ups_real *V, stewart_7ups_real *rates);
+size_t stewart_7ups_actuator_rates_batch(const stewart_7ups_model *model, size_t n, const
+    stewart_7ups_real *X, const stewart_7ups_real *V, stewart_7ups_real *rates, int *status);
+
+/* Accelerations of the actuated joints, in the order of tau. 658 mul, 434 add, 14 div, 14 sqrt, 0
+   trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
+int stewart_7ups_actuator_accelerations(const stewart_7ups_model *model, const stewart_7ups_real
+    *X, const stewart_7ups_real *V, const stewart_7ups_real *A, stewart_7ups_real *accelerations);
+size_t stewart_7ups_actuator_accelerations_batch(const stewart_7ups_model *model, size_t n, const
+    stewart_7ups_real *X, const stewart_7ups_real *V, const stewart_7ups_real *A,
+    stewart_7ups_real *accelerations, int *status);
+
+/* Power that actuators give to the mechanism: tau times their rates. In: X (NQ), V (NV), tau
+   (NU). Out: power (1). */
+int stewart_7ups_power(const stewart_7ups_model *model, const stewart_7ups_real *X, const
+    stewart_7ups_real *V, const stewart_7ups_real *tau, stewart_7ups_real *power);
+size_t stewart_7ups_power_batch(const stewart_7ups_model *model, size_t n, const stewart_7ups_real
+    *X, const stewart_7ups_real *V, const stewart_7ups_real *tau, stewart_7ups_real *power, int
+    *status);
+
+/* base_R_platform at X; a quaternion need not be normalised. Impossible where the quaternion is
+   zero or its squared length overflows. In: X (NQ). Out: R (3 x 3). */
 int stewart_7ups_rotation(const stewart_7ups_real *X, stewart_7ups_real *R);
 size_t stewart_7ups_rotation_batch(size_t n, const stewart_7ups_real *X, stewart_7ups_real *R, int
     *status);
 
-/* X of the platform at origin t with rotation matrix R. INVALID where R has not orthonormal rows,
-   to 1e-06 (float: 1e-5), and determinant +1. In: t (3), R (3 x 3). Out: X (NQ). */
+/* X of the platform at origin t with rotation matrix R; extra coordinates zero. INVALID where R
+   has not orthonormal rows, to 1e-06 (float: 1e-5), and determinant +1. In: t (3), R (3 x 3).
+   Out: X (NQ). */
 int stewart_7ups_pose(const stewart_7ups_real *t, const stewart_7ups_real *R, stewart_7ups_real
     *X);
 size_t stewart_7ups_pose_batch(size_t n, const stewart_7ups_real *t, const stewart_7ups_real *R,
     stewart_7ups_real *X, int *status);
+
+/* Rate of X at the velocity V. In: X (NQ), V (NV). Out: X_dot (NQ). */
+int stewart_7ups_X_dot(const stewart_7ups_real *X, const stewart_7ups_real *V, stewart_7ups_real
+    *X_dot);
+size_t stewart_7ups_X_dot_batch(size_t n, const stewart_7ups_real *X, const stewart_7ups_real *V,
+    stewart_7ups_real *X_dot, int *status);
 
 /* X from roll, pitch, yaw about the fixed axes x, y, z, in that order. In: t (3), rpy (3). Out: X
    (NQ). */
@@ -269,11 +327,26 @@ int stewart_7ups_pose_from_rpy(const stewart_7ups_real *t, const stewart_7ups_re
 size_t stewart_7ups_pose_from_rpy_batch(size_t n, const stewart_7ups_real *t, const
     stewart_7ups_real *rpy, stewart_7ups_real *X, int *status);
 
-/* Rate of X at the velocity V. In: X (NQ), V (NV). Out: X_dot (NQ). */
-int stewart_7ups_X_dot(const stewart_7ups_real *X, const stewart_7ups_real *V, stewart_7ups_real
-    *X_dot);
-size_t stewart_7ups_X_dot_batch(size_t n, const stewart_7ups_real *X, const stewart_7ups_real *V,
-    stewart_7ups_real *X_dot, int *status);
+/* X moved by a displacement: (t + d, exp([phi]) R, y + dy) of step = (d, phi, dy). In: X (NQ),
+   step (NV). Out: X_moved (NQ). */
+int stewart_7ups_retract(const stewart_7ups_real *X, const stewart_7ups_real *step,
+    stewart_7ups_real *X_moved);
+size_t stewart_7ups_retract_batch(size_t n, const stewart_7ups_real *X, const stewart_7ups_real
+    *step, stewart_7ups_real *X_moved, int *status);
+
+/* The displacement from X0 to X1, the inverse of retract; rotations the shorter way. In: X0 (NQ),
+   X1 (NQ). Out: step (NV). */
+int stewart_7ups_difference(const stewart_7ups_real *X0, const stewart_7ups_real *X1,
+    stewart_7ups_real *step);
+size_t stewart_7ups_difference_batch(size_t n, const stewart_7ups_real *X0, const
+    stewart_7ups_real *X1, stewart_7ups_real *step, int *status);
+
+/* X0 moved by s times the displacement to X1: straight on, turning about one axis. In: X0 (NQ),
+   X1 (NQ), s (1). Out: X (NQ). */
+int stewart_7ups_interpolate(const stewart_7ups_real *X0, const stewart_7ups_real *X1, const
+    stewart_7ups_real *s, stewart_7ups_real *X);
+size_t stewart_7ups_interpolate_batch(size_t n, const stewart_7ups_real *X0, const
+    stewart_7ups_real *X1, const stewart_7ups_real *s, stewart_7ups_real *X, int *status);
 
 #ifdef __cplusplus
 }

@@ -113,6 +113,9 @@ typedef struct {
 extern const stewart_sps_params stewart_sps_default_params;
 extern const stewart_sps_real stewart_sps_HOME_X[STEWART_SPS_NQ];
 extern const stewart_sps_real stewart_sps_HOME_Q[STEWART_SPS_NJ];
+/* Places of the actuated joints in q, and their names, in the order of tau. */
+extern const size_t stewart_sps_ACTUATED[STEWART_SPS_NU];
+extern const char *const stewart_sps_ACTUATOR_NAMES[STEWART_SPS_NU];
 
 /* Prepare a model.  STEWART_SPS_INVALID, and the model is all NaN: a parameter is not finite or beyond
    1e+12; a mass is negative; an inertia is not symmetric, or has a negative principal moment,
@@ -139,16 +142,8 @@ int stewart_sps_H(const stewart_sps_model *model, const stewart_sps_real *X, ste
 size_t stewart_sps_H_batch(const stewart_sps_model *model, size_t n, const stewart_sps_real *X,
     stewart_sps_real *H, int *status);
 
-/* M, Z and H together, sharing the work. 2196 mul, 1626 add, 18 div, 12 sqrt, 12 trig. In: X
-   (NQ), V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
-int stewart_sps_dynamics(const stewart_sps_model *model, const stewart_sps_real *X, const
-    stewart_sps_real *V, stewart_sps_real *M, stewart_sps_real *Z, stewart_sps_real *H);
-size_t stewart_sps_dynamics_batch(const stewart_sps_model *model, size_t n, const stewart_sps_real
-    *X, const stewart_sps_real *V, stewart_sps_real *M, stewart_sps_real *Z, stewart_sps_real *H,
-    int *status);
-
-/* Displacements q of all joints, on the assembly branch of home. 162 mul, 120 add, 12 div, 12
-   sqrt, 12 trig. In: X (NQ). Out: q (NJ). */
+/* Displacements q of all joints. They are those of the assembly branch of home. 162 mul, 120 add,
+   12 div, 12 sqrt, 12 trig. In: X (NQ). Out: q (NJ). */
 int stewart_sps_inverse_kinematics(const stewart_sps_model *model, const stewart_sps_real *X,
     stewart_sps_real *q);
 size_t stewart_sps_inverse_kinematics_batch(const stewart_sps_model *model, size_t n, const
@@ -169,9 +164,18 @@ size_t stewart_sps_joint_accelerations_batch(const stewart_sps_model *model, siz
     stewart_sps_real *X, const stewart_sps_real *V, const stewart_sps_real *A, stewart_sps_real
     *accelerations, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 1365 mul, 1041 add, 18 div, 12 sqrt, 12
-   trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or
-   NULL). Out: tau (NU). */
+/* M, Z and H together, sharing the work. 2196 mul, 1626 add, 18 div, 12 sqrt, 12 trig. In: X
+   (NQ), V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
+int stewart_sps_dynamics(const stewart_sps_model *model, const stewart_sps_real *X, const
+    stewart_sps_real *V, stewart_sps_real *M, stewart_sps_real *Z, stewart_sps_real *H);
+size_t stewart_sps_dynamics_batch(const stewart_sps_model *model, size_t n, const stewart_sps_real
+    *X, const stewart_sps_real *V, stewart_sps_real *M, stewart_sps_real *Z, stewart_sps_real *H,
+    int *status);
+
+/* Actuator forces tau for the acceleration A, by Eq. 3. Rows of passive extra coordinates hold
+   where complete_acceleration was used. 1365 mul, 1041 add, 18 div, 12 sqrt, 12 trig; the
+   solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
+   tau (NU). */
 int stewart_sps_inverse_dynamics(const stewart_sps_model *model, const stewart_sps_real *X, const
     stewart_sps_real *V, const stewart_sps_real *A, const stewart_sps_real *wrench,
     stewart_sps_real *tau);
@@ -189,8 +193,9 @@ size_t stewart_sps_forward_dynamics_batch(const stewart_sps_model *model, size_t
     stewart_sps_real *X, const stewart_sps_real *V, const stewart_sps_real *tau, const
     stewart_sps_real *wrench, stewart_sps_real *A, int *status);
 
-/* A with the entries of passive extra coordinates taken from their own rows, on which nothing
-   else acts. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
+/* A with the entries of passive extra coordinates that the others allow. The entries are taken
+   from their own rows (Eq. 7), on which no actuators act. In: X (NQ), V (NV), A (NV), wrench (NW,
+   or NULL). Out: completed (NV). */
 int stewart_sps_complete_acceleration(const stewart_sps_model *model, const stewart_sps_real *X,
     const stewart_sps_real *V, const stewart_sps_real *A, const stewart_sps_real *wrench,
     stewart_sps_real *completed);
@@ -198,9 +203,9 @@ size_t stewart_sps_complete_acceleration_batch(const stewart_sps_model *model, s
     stewart_sps_real *X, const stewart_sps_real *V, const stewart_sps_real *A, const
     stewart_sps_real *wrench, stewart_sps_real *completed, int *status);
 
-/* Force of each leg on the platform at its platform joint, base axes. 1218 mul, 906 add, 18 div,
-   12 sqrt, 12 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
-   Out: forces (6 x 3). */
+/* Force of each leg on the platform at its platform joint, base axes. The actuators give the
+   forces of inverse_dynamics. 1218 mul, 906 add, 18 div, 12 sqrt, 12 trig; inverse dynamics
+   apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (6 x 3). */
 int stewart_sps_leg_reactions(const stewart_sps_model *model, const stewart_sps_real *X, const
     stewart_sps_real *V, const stewart_sps_real *A, const stewart_sps_real *wrench,
     stewart_sps_real *forces);
@@ -208,31 +213,78 @@ size_t stewart_sps_leg_reactions_batch(const stewart_sps_model *model, size_t n,
     stewart_sps_real *X, const stewart_sps_real *V, const stewart_sps_real *A, const
     stewart_sps_real *wrench, stewart_sps_real *forces, int *status);
 
-/* Kinetic and potential energy; the latter is zero at the base origin. In: X (NQ), V (NV). Out:
-   kinetic (1), potential (1). */
+/* Kinetic and potential energy [J]; the latter is zero at the base origin. In: X (NQ), V (NV).
+   Out: kinetic (1), potential (1). */
 int stewart_sps_energy(const stewart_sps_model *model, const stewart_sps_real *X, const
     stewart_sps_real *V, stewart_sps_real *kinetic, stewart_sps_real *potential);
 size_t stewart_sps_energy_batch(const stewart_sps_model *model, size_t n, const stewart_sps_real
     *X, const stewart_sps_real *V, stewart_sps_real *kinetic, stewart_sps_real *potential, int
     *status);
 
-/* X at which the driven joints stand at q_actuated, by Gauss-Newton from X0; extra coordinates
-   that the drives do not determine stay. In: q_actuated (NU), X0 (NQ). Out: X (NQ). */
-int stewart_sps_forward_kinematics(const stewart_sps_model *model, const stewart_sps_real
-    *q_actuated, const stewart_sps_real *X0, stewart_sps_real *X);
-size_t stewart_sps_forward_kinematics_batch(const stewart_sps_model *model, size_t n, const
-    stewart_sps_real *q_actuated, const stewart_sps_real *X0, stewart_sps_real *X, int *status);
-
-/* Singular values of H in descending order, moment rows divided by the rms distance of the
-   platform points from their centroid; for every leg the least tested pivot as a fraction of its
-   scale. 283 mul, 192 add, 6 div, 25 sqrt, 12 trig; the singular values apart. In: X (NQ). Out:
+/* How far a pose is from singularities: singular values of H, rows of moments divided by a
+   length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
+   distance of the platform points from their centroid, or where they coincide the rms size of the
+   legs. 283 mul, 192 add, 6 div, 25 sqrt, 12 trig; the singular values apart. In: X (NQ). Out:
    sigma (6), legs (6). */
 int stewart_sps_condition(const stewart_sps_model *model, const stewart_sps_real *X,
     stewart_sps_real *sigma, stewart_sps_real *legs);
 size_t stewart_sps_condition_batch(const stewart_sps_model *model, size_t n, const
     stewart_sps_real *X, stewart_sps_real *sigma, stewart_sps_real *legs, int *status);
 
-/* base_R_platform; a quaternion need not be normalised. In: X (NQ). Out: R (3 x 3). */
+/* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
+   that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
+   X0 (NQ). Out: X (NQ). */
+int stewart_sps_forward_kinematics(const stewart_sps_model *model, const stewart_sps_real
+    *q_actuated, const stewart_sps_real *X0, stewart_sps_real *X);
+size_t stewart_sps_forward_kinematics_batch(const stewart_sps_model *model, size_t n, const
+    stewart_sps_real *q_actuated, const stewart_sps_real *X0, stewart_sps_real *X, int *status);
+
+/* Power that friction takes, not negative; the rate of energy is power less this. In: X (NQ), V
+   (NV). Out: dissipation (1). */
+int stewart_sps_dissipation(const stewart_sps_model *model, const stewart_sps_real *X, const
+    stewart_sps_real *V, stewart_sps_real *dissipation);
+size_t stewart_sps_dissipation_batch(const stewart_sps_model *model, size_t n, const
+    stewart_sps_real *X, const stewart_sps_real *V, stewart_sps_real *dissipation, int *status);
+
+/* Generalised momentum M V. 1227 mul, 849 add, 18 div, 12 sqrt, 12 trig. In: X (NQ), V (NV). Out:
+   momentum (NV). */
+int stewart_sps_momentum(const stewart_sps_model *model, const stewart_sps_real *X, const
+    stewart_sps_real *V, stewart_sps_real *momentum);
+size_t stewart_sps_momentum_batch(const stewart_sps_model *model, size_t n, const stewart_sps_real
+    *X, const stewart_sps_real *V, stewart_sps_real *momentum, int *status);
+
+/* Displacements of the actuated joints, in the order of tau. 162 mul, 120 add, 12 div, 12 sqrt,
+   12 trig. In: X (NQ). Out: q (NU). */
+int stewart_sps_actuator_positions(const stewart_sps_model *model, const stewart_sps_real *X,
+    stewart_sps_real *q);
+size_t stewart_sps_actuator_positions_batch(const stewart_sps_model *model, size_t n, const
+    stewart_sps_real *X, stewart_sps_real *q, int *status);
+
+/* Rates of the actuated joints, in the order of tau. 474 mul, 276 add, 18 div, 12 sqrt, 12 trig.
+   In: X (NQ), V (NV). Out: rates (NU). */
+int stewart_sps_actuator_rates(const stewart_sps_model *model, const stewart_sps_real *X, const
+    stewart_sps_real *V, stewart_sps_real *rates);
+size_t stewart_sps_actuator_rates_batch(const stewart_sps_model *model, size_t n, const
+    stewart_sps_real *X, const stewart_sps_real *V, stewart_sps_real *rates, int *status);
+
+/* Accelerations of the actuated joints, in the order of tau. 762 mul, 474 add, 18 div, 12 sqrt,
+   12 trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
+int stewart_sps_actuator_accelerations(const stewart_sps_model *model, const stewart_sps_real *X,
+    const stewart_sps_real *V, const stewart_sps_real *A, stewart_sps_real *accelerations);
+size_t stewart_sps_actuator_accelerations_batch(const stewart_sps_model *model, size_t n, const
+    stewart_sps_real *X, const stewart_sps_real *V, const stewart_sps_real *A, stewart_sps_real
+    *accelerations, int *status);
+
+/* Power that actuators give to the mechanism: tau times their rates. In: X (NQ), V (NV), tau
+   (NU). Out: power (1). */
+int stewart_sps_power(const stewart_sps_model *model, const stewart_sps_real *X, const
+    stewart_sps_real *V, const stewart_sps_real *tau, stewart_sps_real *power);
+size_t stewart_sps_power_batch(const stewart_sps_model *model, size_t n, const stewart_sps_real
+    *X, const stewart_sps_real *V, const stewart_sps_real *tau, stewart_sps_real *power, int
+    *status);
+
+/* base_R_platform at X; a quaternion need not be normalised. Impossible where the quaternion is
+   zero or its squared length overflows. In: X (NQ). Out: R (3 x 3). */
 int stewart_sps_rotation(const stewart_sps_real *X, stewart_sps_real *R);
 size_t stewart_sps_rotation_batch(size_t n, const stewart_sps_real *X, stewart_sps_real *R, int
     *status);
@@ -244,6 +296,12 @@ int stewart_sps_pose(const stewart_sps_real *t, const stewart_sps_real *R, stewa
 size_t stewart_sps_pose_batch(size_t n, const stewart_sps_real *t, const stewart_sps_real *R,
     stewart_sps_real *X, int *status);
 
+/* Rate of X at the velocity V. In: X (NQ), V (NV). Out: X_dot (NQ). */
+int stewart_sps_X_dot(const stewart_sps_real *X, const stewart_sps_real *V, stewart_sps_real
+    *X_dot);
+size_t stewart_sps_X_dot_batch(size_t n, const stewart_sps_real *X, const stewart_sps_real *V,
+    stewart_sps_real *X_dot, int *status);
+
 /* X from roll, pitch, yaw about the fixed axes x, y, z, in that order. In: t (3), rpy (3). Out: X
    (NQ). */
 int stewart_sps_pose_from_rpy(const stewart_sps_real *t, const stewart_sps_real *rpy,
@@ -251,11 +309,26 @@ int stewart_sps_pose_from_rpy(const stewart_sps_real *t, const stewart_sps_real 
 size_t stewart_sps_pose_from_rpy_batch(size_t n, const stewart_sps_real *t, const stewart_sps_real
     *rpy, stewart_sps_real *X, int *status);
 
-/* Rate of X at the velocity V. In: X (NQ), V (NV). Out: X_dot (NQ). */
-int stewart_sps_X_dot(const stewart_sps_real *X, const stewart_sps_real *V, stewart_sps_real
-    *X_dot);
-size_t stewart_sps_X_dot_batch(size_t n, const stewart_sps_real *X, const stewart_sps_real *V,
-    stewart_sps_real *X_dot, int *status);
+/* X moved by a displacement: (t + d, exp([phi]) R, y + dy) of step = (d, phi, dy). In: X (NQ),
+   step (NV). Out: X_moved (NQ). */
+int stewart_sps_retract(const stewart_sps_real *X, const stewart_sps_real *step, stewart_sps_real
+    *X_moved);
+size_t stewart_sps_retract_batch(size_t n, const stewart_sps_real *X, const stewart_sps_real
+    *step, stewart_sps_real *X_moved, int *status);
+
+/* The displacement from X0 to X1, the inverse of retract; rotations the shorter way. In: X0 (NQ),
+   X1 (NQ). Out: step (NV). */
+int stewart_sps_difference(const stewart_sps_real *X0, const stewart_sps_real *X1,
+    stewart_sps_real *step);
+size_t stewart_sps_difference_batch(size_t n, const stewart_sps_real *X0, const stewart_sps_real
+    *X1, stewart_sps_real *step, int *status);
+
+/* X0 moved by s times the displacement to X1: straight on, turning about one axis. In: X0 (NQ),
+   X1 (NQ), s (1). Out: X (NQ). */
+int stewart_sps_interpolate(const stewart_sps_real *X0, const stewart_sps_real *X1, const
+    stewart_sps_real *s, stewart_sps_real *X);
+size_t stewart_sps_interpolate_batch(size_t n, const stewart_sps_real *X0, const stewart_sps_real
+    *X1, const stewart_sps_real *s, stewart_sps_real *X, int *status);
 
 #ifdef __cplusplus
 }

@@ -147,6 +147,9 @@ typedef struct {
 extern const tricept_params tricept_default_params;
 extern const tricept_real tricept_HOME_X[TRICEPT_NQ];
 extern const tricept_real tricept_HOME_Q[TRICEPT_NJ];
+/* Places of the actuated joints in q, and their names, in the order of tau. */
+extern const size_t tricept_ACTUATED[TRICEPT_NU];
+extern const char *const tricept_ACTUATOR_NAMES[TRICEPT_NU];
 
 /* Prepare a model.  TRICEPT_INVALID, and the model is all NaN: a parameter is not finite or beyond
    1e+12; a mass is negative; an inertia is not symmetric, or has a negative principal moment,
@@ -173,21 +176,14 @@ int tricept_H(const tricept_model *model, const tricept_real *X, tricept_real *H
 size_t tricept_H_batch(const tricept_model *model, size_t n, const tricept_real *X, tricept_real
     *H, int *status);
 
-/* Directions Hk of the constraint forces lambda. 197 mul, 116 add, 4 div, 3 sqrt, 0 trig. In: X
-   (NQ). Out: Hk (NV x NC). */
+/* Directions Hk of the constraint forces lambda (Eq. 36). 197 mul, 116 add, 4 div, 3 sqrt, 0
+   trig. In: X (NQ). Out: Hk (NV x NC). */
 int tricept_Hk(const tricept_model *model, const tricept_real *X, tricept_real *Hk);
 size_t tricept_Hk_batch(const tricept_model *model, size_t n, const tricept_real *X, tricept_real
     *Hk, int *status);
 
-/* M, Z and H together, sharing the work. 1986 mul, 1460 add, 15 div, 14 sqrt, 0 trig. In: X (NQ),
-   V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
-int tricept_dynamics(const tricept_model *model, const tricept_real *X, const tricept_real *V,
-    tricept_real *M, tricept_real *Z, tricept_real *H);
-size_t tricept_dynamics_batch(const tricept_model *model, size_t n, const tricept_real *X, const
-    tricept_real *V, tricept_real *M, tricept_real *Z, tricept_real *H, int *status);
-
-/* Residuals of the constraints [m, or 1 for angles]; zero where the loops close. 134 mul, 76 add,
-   4 div, 3 sqrt, 0 trig. In: X (NQ). Out: residual (NC). */
+/* Residuals of the constraints [m, or 1 for angles]; zero on closed loops (Eq. 37). 134 mul, 76
+   add, 4 div, 3 sqrt, 0 trig. In: X (NQ). Out: residual (NC). */
 int tricept_constraints(const tricept_model *model, const tricept_real *X, tricept_real *residual);
 size_t tricept_constraints_batch(const tricept_model *model, size_t n, const tricept_real *X,
     tricept_real *residual, int *status);
@@ -199,8 +195,8 @@ int tricept_constraint_bias(const tricept_model *model, const tricept_real *X, c
 size_t tricept_constraint_bias_batch(const tricept_model *model, size_t n, const tricept_real *X,
     const tricept_real *V, tricept_real *bias, int *status);
 
-/* Displacements q of all joints, on the assembly branch of home. 108 mul, 80 add, 8 div, 8 sqrt,
-   8 trig. In: X (NQ). Out: q (NJ). */
+/* Displacements q of all joints. They are those of the assembly branch of home. 108 mul, 80 add,
+   8 div, 8 sqrt, 8 trig. In: X (NQ). Out: q (NJ). */
 int tricept_inverse_kinematics(const tricept_model *model, const tricept_real *X, tricept_real *q);
 size_t tricept_inverse_kinematics_batch(const tricept_model *model, size_t n, const tricept_real
     *X, tricept_real *q, int *status);
@@ -219,9 +215,16 @@ int tricept_joint_accelerations(const tricept_model *model, const tricept_real *
 size_t tricept_joint_accelerations_batch(const tricept_model *model, size_t n, const tricept_real
     *X, const tricept_real *V, const tricept_real *A, tricept_real *accelerations, int *status);
 
-/* Actuator forces tau and multipliers lambda for the acceleration A, by Eq. 3. 1225 mul, 902 add,
-   15 div, 14 sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), A
-   (NV), wrench (NW, or NULL). Out: tau (NU), lambda (NC). */
+/* M, Z and H together, sharing the work. 1986 mul, 1460 add, 15 div, 14 sqrt, 0 trig. In: X (NQ),
+   V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
+int tricept_dynamics(const tricept_model *model, const tricept_real *X, const tricept_real *V,
+    tricept_real *M, tricept_real *Z, tricept_real *H);
+size_t tricept_dynamics_batch(const tricept_model *model, size_t n, const tricept_real *X, const
+    tricept_real *V, tricept_real *M, tricept_real *Z, tricept_real *H, int *status);
+
+/* Actuator forces tau for the acceleration A, by Eq. 3. 1225 mul, 902 add, 15 div, 14 sqrt, 0
+   trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or
+   NULL). Out: tau (NU), lambda (NC). */
 int tricept_inverse_dynamics(const tricept_model *model, const tricept_real *X, const tricept_real
     *V, const tricept_real *A, const tricept_real *wrench, tricept_real *tau, tricept_real
     *lambda);
@@ -239,67 +242,122 @@ size_t tricept_forward_dynamics_batch(const tricept_model *model, size_t n, cons
     const tricept_real *V, const tricept_real *tau, const tricept_real *wrench, tricept_real *A,
     tricept_real *lambda, int *status);
 
-/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
-   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
+/* A with the entries of passive extra coordinates that the others allow. It is A: there are no
+   passive extra coordinates, whose accelerations would follow. In: X (NQ), V (NV), A (NV), wrench
+   (NW, or NULL). Out: completed (NV). */
 int tricept_complete_acceleration(const tricept_model *model, const tricept_real *X, const
     tricept_real *V, const tricept_real *A, const tricept_real *wrench, tricept_real *completed);
 size_t tricept_complete_acceleration_batch(const tricept_model *model, size_t n, const
     tricept_real *X, const tricept_real *V, const tricept_real *A, const tricept_real *wrench,
     tricept_real *completed, int *status);
 
-/* Force, then moment, of each leg on the platform at its platform joint, base axes. 1087 mul, 764
-   add, 15 div, 14 sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW,
-   or NULL). Out: forces (4 x 6). */
+/* Force and moment of each leg on the platform at its platform joint, base axes. The actuators
+   give the forces of inverse_dynamics. 1087 mul, 764 add, 15 div, 14 sqrt, 0 trig; inverse
+   dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (4 x 6). */
 int tricept_leg_reactions(const tricept_model *model, const tricept_real *X, const tricept_real
     *V, const tricept_real *A, const tricept_real *wrench, tricept_real *forces);
 size_t tricept_leg_reactions_batch(const tricept_model *model, size_t n, const tricept_real *X,
     const tricept_real *V, const tricept_real *A, const tricept_real *wrench, tricept_real
     *forces, int *status);
 
-/* Kinetic and potential energy; the latter is zero at the base origin. In: X (NQ), V (NV). Out:
-   kinetic (1), potential (1). */
+/* Kinetic and potential energy [J]; the latter is zero at the base origin. In: X (NQ), V (NV).
+   Out: kinetic (1), potential (1). */
 int tricept_energy(const tricept_model *model, const tricept_real *X, const tricept_real *V,
     tricept_real *kinetic, tricept_real *potential);
 size_t tricept_energy_batch(const tricept_model *model, size_t n, const tricept_real *X, const
     tricept_real *V, tricept_real *kinetic, tricept_real *potential, int *status);
 
-/* X at which the driven joints stand at q_actuated, by Gauss-Newton from X0; extra coordinates
-   that the drives do not determine stay. In: q_actuated (NU), X0 (NQ). Out: X (NQ). */
-int tricept_forward_kinematics(const tricept_model *model, const tricept_real *q_actuated, const
-    tricept_real *X0, tricept_real *X);
-size_t tricept_forward_kinematics_batch(const tricept_model *model, size_t n, const tricept_real
-    *q_actuated, const tricept_real *X0, tricept_real *X, int *status);
-
-/* Singular values of H in descending order, moment rows divided by the rms distance of the
-   platform points from their centroid; for every leg the least tested pivot as a fraction of its
-   scale. 431 mul, 292 add, 11 div, 23 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+/* How far a pose is from singularities: singular values of H, rows of moments divided by a
+   length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
+   distance of the platform points from their centroid, or where they coincide the rms size of the
+   legs. 431 mul, 292 add, 11 div, 23 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
    sigma (3), legs (4). */
 int tricept_condition(const tricept_model *model, const tricept_real *X, tricept_real *sigma,
     tricept_real *legs);
 size_t tricept_condition_batch(const tricept_model *model, size_t n, const tricept_real *X,
     tricept_real *sigma, tricept_real *legs, int *status);
 
-/* The same of [H Hk], which inverse dynamics solves. 431 mul, 292 add, 11 div, 23 sqrt, 0 trig;
-   the singular values apart. In: X (NQ). Out: sigma (6), legs (4). */
+/* The same with the singular values of [H Hk], which inverse dynamics solves. The length is the
+   rms distance of the platform points from their centroid, or where they coincide the rms size of
+   the legs. 431 mul, 292 add, 11 div, 23 sqrt, 0 trig; the singular values apart. In: X (NQ).
+   Out: sigma (6), legs (4). */
 int tricept_condition_constrained(const tricept_model *model, const tricept_real *X, tricept_real
     *sigma, tricept_real *legs);
 size_t tricept_condition_constrained_batch(const tricept_model *model, size_t n, const
     tricept_real *X, tricept_real *sigma, tricept_real *legs, int *status);
 
-/* The nearest pose on which the constraints hold. In: X (NQ). Out: projected (NQ). */
+/* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
+   that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
+   X0 (NQ). Out: X (NQ). */
+int tricept_forward_kinematics(const tricept_model *model, const tricept_real *q_actuated, const
+    tricept_real *X0, tricept_real *X);
+size_t tricept_forward_kinematics_batch(const tricept_model *model, size_t n, const tricept_real
+    *q_actuated, const tricept_real *X0, tricept_real *X, int *status);
+
+/* The nearest pose on which the constraints hold. By Gauss-Newton; impossible where none is
+   found. In: X (NQ). Out: projected (NQ). */
 int tricept_project(const tricept_model *model, const tricept_real *X, tricept_real *projected);
 size_t tricept_project_batch(const tricept_model *model, size_t n, const tricept_real *X,
     tricept_real *projected, int *status);
 
-/* base_R_platform; a quaternion need not be normalised. In: X (NQ). Out: R (3 x 3). */
+/* Power that friction takes, not negative; the rate of energy is power less this. In: X (NQ), V
+   (NV). Out: dissipation (1). */
+int tricept_dissipation(const tricept_model *model, const tricept_real *X, const tricept_real *V,
+    tricept_real *dissipation);
+size_t tricept_dissipation_batch(const tricept_model *model, size_t n, const tricept_real *X,
+    const tricept_real *V, tricept_real *dissipation, int *status);
+
+/* Generalised momentum M V. 1208 mul, 857 add, 15 div, 14 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+   momentum (NV). */
+int tricept_momentum(const tricept_model *model, const tricept_real *X, const tricept_real *V,
+    tricept_real *momentum);
+size_t tricept_momentum_batch(const tricept_model *model, size_t n, const tricept_real *X, const
+    tricept_real *V, tricept_real *momentum, int *status);
+
+/* Displacements of the actuated joints, in the order of tau. 108 mul, 80 add, 8 div, 8 sqrt, 8
+   trig. In: X (NQ). Out: q (NU). */
+int tricept_actuator_positions(const tricept_model *model, const tricept_real *X, tricept_real *q);
+size_t tricept_actuator_positions_batch(const tricept_model *model, size_t n, const tricept_real
+    *X, tricept_real *q, int *status);
+
+/* Rates of the actuated joints, in the order of tau. 495 mul, 306 add, 15 div, 14 sqrt, 0 trig.
+   In: X (NQ), V (NV). Out: rates (NU). */
+int tricept_actuator_rates(const tricept_model *model, const tricept_real *X, const tricept_real
+    *V, tricept_real *rates);
+size_t tricept_actuator_rates_batch(const tricept_model *model, size_t n, const tricept_real *X,
+    const tricept_real *V, tricept_real *rates, int *status);
+
+/* Accelerations of the actuated joints, in the order of tau. 737 mul, 470 add, 15 div, 14 sqrt, 0
+   trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
+int tricept_actuator_accelerations(const tricept_model *model, const tricept_real *X, const
+    tricept_real *V, const tricept_real *A, tricept_real *accelerations);
+size_t tricept_actuator_accelerations_batch(const tricept_model *model, size_t n, const
+    tricept_real *X, const tricept_real *V, const tricept_real *A, tricept_real *accelerations,
+    int *status);
+
+/* Power that actuators give to the mechanism: tau times their rates. In: X (NQ), V (NV), tau
+   (NU). Out: power (1). */
+int tricept_power(const tricept_model *model, const tricept_real *X, const tricept_real *V, const
+    tricept_real *tau, tricept_real *power);
+size_t tricept_power_batch(const tricept_model *model, size_t n, const tricept_real *X, const
+    tricept_real *V, const tricept_real *tau, tricept_real *power, int *status);
+
+/* base_R_platform at X; a quaternion need not be normalised. Impossible where the quaternion is
+   zero or its squared length overflows. In: X (NQ). Out: R (3 x 3). */
 int tricept_rotation(const tricept_real *X, tricept_real *R);
 size_t tricept_rotation_batch(size_t n, const tricept_real *X, tricept_real *R, int *status);
 
-/* X of the platform at origin t with rotation matrix R. INVALID where R has not orthonormal rows,
-   to 1e-06 (float: 1e-5), and determinant +1. In: t (3), R (3 x 3). Out: X (NQ). */
+/* X of the platform at origin t with rotation matrix R; extra coordinates zero. INVALID where R
+   has not orthonormal rows, to 1e-06 (float: 1e-5), and determinant +1. In: t (3), R (3 x 3).
+   Out: X (NQ). */
 int tricept_pose(const tricept_real *t, const tricept_real *R, tricept_real *X);
 size_t tricept_pose_batch(size_t n, const tricept_real *t, const tricept_real *R, tricept_real *X,
     int *status);
+
+/* Rate of X at the velocity V. In: X (NQ), V (NV). Out: X_dot (NQ). */
+int tricept_X_dot(const tricept_real *X, const tricept_real *V, tricept_real *X_dot);
+size_t tricept_X_dot_batch(size_t n, const tricept_real *X, const tricept_real *V, tricept_real
+    *X_dot, int *status);
 
 /* X from roll, pitch, yaw about the fixed axes x, y, z, in that order. In: t (3), rpy (3). Out: X
    (NQ). */
@@ -307,10 +365,24 @@ int tricept_pose_from_rpy(const tricept_real *t, const tricept_real *rpy, tricep
 size_t tricept_pose_from_rpy_batch(size_t n, const tricept_real *t, const tricept_real *rpy,
     tricept_real *X, int *status);
 
-/* Rate of X at the velocity V. In: X (NQ), V (NV). Out: X_dot (NQ). */
-int tricept_X_dot(const tricept_real *X, const tricept_real *V, tricept_real *X_dot);
-size_t tricept_X_dot_batch(size_t n, const tricept_real *X, const tricept_real *V, tricept_real
-    *X_dot, int *status);
+/* X moved by a displacement: (t + d, exp([phi]) R, y + dy) of step = (d, phi, dy). In: X (NQ),
+   step (NV). Out: X_moved (NQ). */
+int tricept_retract(const tricept_real *X, const tricept_real *step, tricept_real *X_moved);
+size_t tricept_retract_batch(size_t n, const tricept_real *X, const tricept_real *step,
+    tricept_real *X_moved, int *status);
+
+/* The displacement from X0 to X1, the inverse of retract; rotations the shorter way. In: X0 (NQ),
+   X1 (NQ). Out: step (NV). */
+int tricept_difference(const tricept_real *X0, const tricept_real *X1, tricept_real *step);
+size_t tricept_difference_batch(size_t n, const tricept_real *X0, const tricept_real *X1,
+    tricept_real *step, int *status);
+
+/* X0 moved by s times the displacement to X1: straight on, turning about one axis. In: X0 (NQ),
+   X1 (NQ), s (1). Out: X (NQ). */
+int tricept_interpolate(const tricept_real *X0, const tricept_real *X1, const tricept_real *s,
+    tricept_real *X);
+size_t tricept_interpolate_batch(size_t n, const tricept_real *X0, const tricept_real *X1, const
+    tricept_real *s, tricept_real *X, int *status);
 
 #ifdef __cplusplus
 }

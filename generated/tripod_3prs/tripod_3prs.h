@@ -112,6 +112,9 @@ typedef struct {
 extern const tripod_3prs_params tripod_3prs_default_params;
 extern const tripod_3prs_real tripod_3prs_HOME_X[TRIPOD_3PRS_NQ];
 extern const tripod_3prs_real tripod_3prs_HOME_Q[TRIPOD_3PRS_NJ];
+/* Places of the actuated joints in q, and their names, in the order of tau. */
+extern const size_t tripod_3prs_ACTUATED[TRIPOD_3PRS_NU];
+extern const char *const tripod_3prs_ACTUATOR_NAMES[TRIPOD_3PRS_NU];
 
 /* Prepare a model.  TRIPOD_3PRS_INVALID, and the model is all NaN: a parameter is not finite or beyond
    1e+12; a mass is negative; an inertia is not symmetric, or has a negative principal moment,
@@ -138,23 +141,15 @@ int tripod_3prs_H(const tripod_3prs_model *model, const tripod_3prs_real *X, tri
 size_t tripod_3prs_H_batch(const tripod_3prs_model *model, size_t n, const tripod_3prs_real *X,
     tripod_3prs_real *H, int *status);
 
-/* Directions Hk of the constraint forces lambda. 45 mul, 27 add, 0 div, 0 sqrt, 0 trig. In: X
-   (NQ). Out: Hk (NV x NC). */
+/* Directions Hk of the constraint forces lambda (Eq. 36). 45 mul, 27 add, 0 div, 0 sqrt, 0 trig.
+   In: X (NQ). Out: Hk (NV x NC). */
 int tripod_3prs_Hk(const tripod_3prs_model *model, const tripod_3prs_real *X, tripod_3prs_real
     *Hk);
 size_t tripod_3prs_Hk_batch(const tripod_3prs_model *model, size_t n, const tripod_3prs_real *X,
     tripod_3prs_real *Hk, int *status);
 
-/* M, Z and H together, sharing the work. 738 mul, 540 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V
-   (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
-int tripod_3prs_dynamics(const tripod_3prs_model *model, const tripod_3prs_real *X, const
-    tripod_3prs_real *V, tripod_3prs_real *M, tripod_3prs_real *Z, tripod_3prs_real *H);
-size_t tripod_3prs_dynamics_batch(const tripod_3prs_model *model, size_t n, const tripod_3prs_real
-    *X, const tripod_3prs_real *V, tripod_3prs_real *M, tripod_3prs_real *Z, tripod_3prs_real *H,
-    int *status);
-
-/* Residuals of the constraints [m, or 1 for angles]; zero where the loops close. 36 mul, 42 add,
-   0 div, 0 sqrt, 0 trig. In: X (NQ). Out: residual (NC). */
+/* Residuals of the constraints [m, or 1 for angles]; zero on closed loops (Eq. 37). 36 mul, 42
+   add, 0 div, 0 sqrt, 0 trig. In: X (NQ). Out: residual (NC). */
 int tripod_3prs_constraints(const tripod_3prs_model *model, const tripod_3prs_real *X,
     tripod_3prs_real *residual);
 size_t tripod_3prs_constraints_batch(const tripod_3prs_model *model, size_t n, const
@@ -167,8 +162,8 @@ int tripod_3prs_constraint_bias(const tripod_3prs_model *model, const tripod_3pr
 size_t tripod_3prs_constraint_bias_batch(const tripod_3prs_model *model, size_t n, const
     tripod_3prs_real *X, const tripod_3prs_real *V, tripod_3prs_real *bias, int *status);
 
-/* Displacements q of all joints, on the assembly branch of home. 93 mul, 75 add, 3 div, 6 sqrt, 3
-   trig. In: X (NQ). Out: q (NJ). */
+/* Displacements q of all joints. They are those of the assembly branch of home. 93 mul, 75 add, 3
+   div, 6 sqrt, 3 trig. In: X (NQ). Out: q (NJ). */
 int tripod_3prs_inverse_kinematics(const tripod_3prs_model *model, const tripod_3prs_real *X,
     tripod_3prs_real *q);
 size_t tripod_3prs_inverse_kinematics_batch(const tripod_3prs_model *model, size_t n, const
@@ -189,9 +184,17 @@ size_t tripod_3prs_joint_accelerations_batch(const tripod_3prs_model *model, siz
     tripod_3prs_real *X, const tripod_3prs_real *V, const tripod_3prs_real *A, tripod_3prs_real
     *accelerations, int *status);
 
-/* Actuator forces tau and multipliers lambda for the acceleration A, by Eq. 3. 510 mul, 372 add,
-   6 div, 6 sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV),
-   wrench (NW, or NULL). Out: tau (NU), lambda (NC). */
+/* M, Z and H together, sharing the work. 738 mul, 540 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V
+   (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
+int tripod_3prs_dynamics(const tripod_3prs_model *model, const tripod_3prs_real *X, const
+    tripod_3prs_real *V, tripod_3prs_real *M, tripod_3prs_real *Z, tripod_3prs_real *H);
+size_t tripod_3prs_dynamics_batch(const tripod_3prs_model *model, size_t n, const tripod_3prs_real
+    *X, const tripod_3prs_real *V, tripod_3prs_real *M, tripod_3prs_real *Z, tripod_3prs_real *H,
+    int *status);
+
+/* Actuator forces tau for the acceleration A, by Eq. 3. 510 mul, 372 add, 6 div, 6 sqrt, 0 trig;
+   the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
+   Out: tau (NU), lambda (NC). */
 int tripod_3prs_inverse_dynamics(const tripod_3prs_model *model, const tripod_3prs_real *X, const
     tripod_3prs_real *V, const tripod_3prs_real *A, const tripod_3prs_real *wrench,
     tripod_3prs_real *tau, tripod_3prs_real *lambda);
@@ -209,8 +212,9 @@ size_t tripod_3prs_forward_dynamics_batch(const tripod_3prs_model *model, size_t
     tripod_3prs_real *X, const tripod_3prs_real *V, const tripod_3prs_real *tau, const
     tripod_3prs_real *wrench, tripod_3prs_real *A, tripod_3prs_real *lambda, int *status);
 
-/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
-   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
+/* A with the entries of passive extra coordinates that the others allow. It is A: there are no
+   passive extra coordinates, whose accelerations would follow. In: X (NQ), V (NV), A (NV), wrench
+   (NW, or NULL). Out: completed (NV). */
 int tripod_3prs_complete_acceleration(const tripod_3prs_model *model, const tripod_3prs_real *X,
     const tripod_3prs_real *V, const tripod_3prs_real *A, const tripod_3prs_real *wrench,
     tripod_3prs_real *completed);
@@ -218,9 +222,9 @@ size_t tripod_3prs_complete_acceleration_batch(const tripod_3prs_model *model, s
     tripod_3prs_real *X, const tripod_3prs_real *V, const tripod_3prs_real *A, const
     tripod_3prs_real *wrench, tripod_3prs_real *completed, int *status);
 
-/* Force of each leg on the platform at its platform joint, base axes. 363 mul, 246 add, 6 div, 6
-   sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
-   forces (3 x 3). */
+/* Force of each leg on the platform at its platform joint, base axes. The actuators give the
+   forces of inverse_dynamics. 363 mul, 246 add, 6 div, 6 sqrt, 0 trig; inverse dynamics apart.
+   In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (3 x 3). */
 int tripod_3prs_leg_reactions(const tripod_3prs_model *model, const tripod_3prs_real *X, const
     tripod_3prs_real *V, const tripod_3prs_real *A, const tripod_3prs_real *wrench,
     tripod_3prs_real *forces);
@@ -228,53 +232,110 @@ size_t tripod_3prs_leg_reactions_batch(const tripod_3prs_model *model, size_t n,
     tripod_3prs_real *X, const tripod_3prs_real *V, const tripod_3prs_real *A, const
     tripod_3prs_real *wrench, tripod_3prs_real *forces, int *status);
 
-/* Kinetic and potential energy; the latter is zero at the base origin. In: X (NQ), V (NV). Out:
-   kinetic (1), potential (1). */
+/* Kinetic and potential energy [J]; the latter is zero at the base origin. In: X (NQ), V (NV).
+   Out: kinetic (1), potential (1). */
 int tripod_3prs_energy(const tripod_3prs_model *model, const tripod_3prs_real *X, const
     tripod_3prs_real *V, tripod_3prs_real *kinetic, tripod_3prs_real *potential);
 size_t tripod_3prs_energy_batch(const tripod_3prs_model *model, size_t n, const tripod_3prs_real
     *X, const tripod_3prs_real *V, tripod_3prs_real *kinetic, tripod_3prs_real *potential, int
     *status);
 
-/* X at which the driven joints stand at q_actuated, by Gauss-Newton from X0; extra coordinates
-   that the drives do not determine stay. In: q_actuated (NU), X0 (NQ). Out: X (NQ). */
-int tripod_3prs_forward_kinematics(const tripod_3prs_model *model, const tripod_3prs_real
-    *q_actuated, const tripod_3prs_real *X0, tripod_3prs_real *X);
-size_t tripod_3prs_forward_kinematics_batch(const tripod_3prs_model *model, size_t n, const
-    tripod_3prs_real *q_actuated, const tripod_3prs_real *X0, tripod_3prs_real *X, int *status);
-
-/* Singular values of H in descending order, moment rows divided by the rms distance of the
-   platform points from their centroid; for every leg the least tested pivot as a fraction of its
-   scale. 211 mul, 144 add, 6 div, 10 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+/* How far a pose is from singularities: singular values of H, rows of moments divided by a
+   length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
+   distance of the platform points from their centroid, or where they coincide the rms size of the
+   legs. 211 mul, 144 add, 6 div, 10 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
    sigma (3), legs (3). */
 int tripod_3prs_condition(const tripod_3prs_model *model, const tripod_3prs_real *X,
     tripod_3prs_real *sigma, tripod_3prs_real *legs);
 size_t tripod_3prs_condition_batch(const tripod_3prs_model *model, size_t n, const
     tripod_3prs_real *X, tripod_3prs_real *sigma, tripod_3prs_real *legs, int *status);
 
-/* The same of [H Hk], which inverse dynamics solves. 211 mul, 144 add, 6 div, 10 sqrt, 0 trig;
-   the singular values apart. In: X (NQ). Out: sigma (6), legs (3). */
+/* The same with the singular values of [H Hk], which inverse dynamics solves. The length is the
+   rms distance of the platform points from their centroid, or where they coincide the rms size of
+   the legs. 211 mul, 144 add, 6 div, 10 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   sigma (6), legs (3). */
 int tripod_3prs_condition_constrained(const tripod_3prs_model *model, const tripod_3prs_real *X,
     tripod_3prs_real *sigma, tripod_3prs_real *legs);
 size_t tripod_3prs_condition_constrained_batch(const tripod_3prs_model *model, size_t n, const
     tripod_3prs_real *X, tripod_3prs_real *sigma, tripod_3prs_real *legs, int *status);
 
-/* The nearest pose on which the constraints hold. In: X (NQ). Out: projected (NQ). */
+/* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
+   that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
+   X0 (NQ). Out: X (NQ). */
+int tripod_3prs_forward_kinematics(const tripod_3prs_model *model, const tripod_3prs_real
+    *q_actuated, const tripod_3prs_real *X0, tripod_3prs_real *X);
+size_t tripod_3prs_forward_kinematics_batch(const tripod_3prs_model *model, size_t n, const
+    tripod_3prs_real *q_actuated, const tripod_3prs_real *X0, tripod_3prs_real *X, int *status);
+
+/* The nearest pose on which the constraints hold. By Gauss-Newton; impossible where none is
+   found. In: X (NQ). Out: projected (NQ). */
 int tripod_3prs_project(const tripod_3prs_model *model, const tripod_3prs_real *X,
     tripod_3prs_real *projected);
 size_t tripod_3prs_project_batch(const tripod_3prs_model *model, size_t n, const tripod_3prs_real
     *X, tripod_3prs_real *projected, int *status);
 
-/* base_R_platform; a quaternion need not be normalised. In: X (NQ). Out: R (3 x 3). */
+/* Power that friction takes, not negative; the rate of energy is power less this. In: X (NQ), V
+   (NV). Out: dissipation (1). */
+int tripod_3prs_dissipation(const tripod_3prs_model *model, const tripod_3prs_real *X, const
+    tripod_3prs_real *V, tripod_3prs_real *dissipation);
+size_t tripod_3prs_dissipation_batch(const tripod_3prs_model *model, size_t n, const
+    tripod_3prs_real *X, const tripod_3prs_real *V, tripod_3prs_real *dissipation, int *status);
+
+/* Generalised momentum M V. 414 mul, 318 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+   momentum (NV). */
+int tripod_3prs_momentum(const tripod_3prs_model *model, const tripod_3prs_real *X, const
+    tripod_3prs_real *V, tripod_3prs_real *momentum);
+size_t tripod_3prs_momentum_batch(const tripod_3prs_model *model, size_t n, const tripod_3prs_real
+    *X, const tripod_3prs_real *V, tripod_3prs_real *momentum, int *status);
+
+/* Displacements of the actuated joints, in the order of tau. 93 mul, 75 add, 3 div, 6 sqrt, 3
+   trig. In: X (NQ). Out: q (NU). */
+int tripod_3prs_actuator_positions(const tripod_3prs_model *model, const tripod_3prs_real *X,
+    tripod_3prs_real *q);
+size_t tripod_3prs_actuator_positions_batch(const tripod_3prs_model *model, size_t n, const
+    tripod_3prs_real *X, tripod_3prs_real *q, int *status);
+
+/* Rates of the actuated joints, in the order of tau. 138 mul, 105 add, 6 div, 6 sqrt, 0 trig. In:
+   X (NQ), V (NV). Out: rates (NU). */
+int tripod_3prs_actuator_rates(const tripod_3prs_model *model, const tripod_3prs_real *X, const
+    tripod_3prs_real *V, tripod_3prs_real *rates);
+size_t tripod_3prs_actuator_rates_batch(const tripod_3prs_model *model, size_t n, const
+    tripod_3prs_real *X, const tripod_3prs_real *V, tripod_3prs_real *rates, int *status);
+
+/* Accelerations of the actuated joints, in the order of tau. 219 mul, 162 add, 6 div, 6 sqrt, 0
+   trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
+int tripod_3prs_actuator_accelerations(const tripod_3prs_model *model, const tripod_3prs_real *X,
+    const tripod_3prs_real *V, const tripod_3prs_real *A, tripod_3prs_real *accelerations);
+size_t tripod_3prs_actuator_accelerations_batch(const tripod_3prs_model *model, size_t n, const
+    tripod_3prs_real *X, const tripod_3prs_real *V, const tripod_3prs_real *A, tripod_3prs_real
+    *accelerations, int *status);
+
+/* Power that actuators give to the mechanism: tau times their rates. In: X (NQ), V (NV), tau
+   (NU). Out: power (1). */
+int tripod_3prs_power(const tripod_3prs_model *model, const tripod_3prs_real *X, const
+    tripod_3prs_real *V, const tripod_3prs_real *tau, tripod_3prs_real *power);
+size_t tripod_3prs_power_batch(const tripod_3prs_model *model, size_t n, const tripod_3prs_real
+    *X, const tripod_3prs_real *V, const tripod_3prs_real *tau, tripod_3prs_real *power, int
+    *status);
+
+/* base_R_platform at X; a quaternion need not be normalised. Impossible where the quaternion is
+   zero or its squared length overflows. In: X (NQ). Out: R (3 x 3). */
 int tripod_3prs_rotation(const tripod_3prs_real *X, tripod_3prs_real *R);
 size_t tripod_3prs_rotation_batch(size_t n, const tripod_3prs_real *X, tripod_3prs_real *R, int
     *status);
 
-/* X of the platform at origin t with rotation matrix R. INVALID where R has not orthonormal rows,
-   to 1e-06 (float: 1e-5), and determinant +1. In: t (3), R (3 x 3). Out: X (NQ). */
+/* X of the platform at origin t with rotation matrix R; extra coordinates zero. INVALID where R
+   has not orthonormal rows, to 1e-06 (float: 1e-5), and determinant +1. In: t (3), R (3 x 3).
+   Out: X (NQ). */
 int tripod_3prs_pose(const tripod_3prs_real *t, const tripod_3prs_real *R, tripod_3prs_real *X);
 size_t tripod_3prs_pose_batch(size_t n, const tripod_3prs_real *t, const tripod_3prs_real *R,
     tripod_3prs_real *X, int *status);
+
+/* Rate of X at the velocity V. In: X (NQ), V (NV). Out: X_dot (NQ). */
+int tripod_3prs_X_dot(const tripod_3prs_real *X, const tripod_3prs_real *V, tripod_3prs_real
+    *X_dot);
+size_t tripod_3prs_X_dot_batch(size_t n, const tripod_3prs_real *X, const tripod_3prs_real *V,
+    tripod_3prs_real *X_dot, int *status);
 
 /* X from roll, pitch, yaw about the fixed axes x, y, z, in that order. In: t (3), rpy (3). Out: X
    (NQ). */
@@ -283,11 +344,26 @@ int tripod_3prs_pose_from_rpy(const tripod_3prs_real *t, const tripod_3prs_real 
 size_t tripod_3prs_pose_from_rpy_batch(size_t n, const tripod_3prs_real *t, const tripod_3prs_real
     *rpy, tripod_3prs_real *X, int *status);
 
-/* Rate of X at the velocity V. In: X (NQ), V (NV). Out: X_dot (NQ). */
-int tripod_3prs_X_dot(const tripod_3prs_real *X, const tripod_3prs_real *V, tripod_3prs_real
-    *X_dot);
-size_t tripod_3prs_X_dot_batch(size_t n, const tripod_3prs_real *X, const tripod_3prs_real *V,
-    tripod_3prs_real *X_dot, int *status);
+/* X moved by a displacement: (t + d, exp([phi]) R, y + dy) of step = (d, phi, dy). In: X (NQ),
+   step (NV). Out: X_moved (NQ). */
+int tripod_3prs_retract(const tripod_3prs_real *X, const tripod_3prs_real *step, tripod_3prs_real
+    *X_moved);
+size_t tripod_3prs_retract_batch(size_t n, const tripod_3prs_real *X, const tripod_3prs_real
+    *step, tripod_3prs_real *X_moved, int *status);
+
+/* The displacement from X0 to X1, the inverse of retract; rotations the shorter way. In: X0 (NQ),
+   X1 (NQ). Out: step (NV). */
+int tripod_3prs_difference(const tripod_3prs_real *X0, const tripod_3prs_real *X1,
+    tripod_3prs_real *step);
+size_t tripod_3prs_difference_batch(size_t n, const tripod_3prs_real *X0, const tripod_3prs_real
+    *X1, tripod_3prs_real *step, int *status);
+
+/* X0 moved by s times the displacement to X1: straight on, turning about one axis. In: X0 (NQ),
+   X1 (NQ), s (1). Out: X (NQ). */
+int tripod_3prs_interpolate(const tripod_3prs_real *X0, const tripod_3prs_real *X1, const
+    tripod_3prs_real *s, tripod_3prs_real *X);
+size_t tripod_3prs_interpolate_batch(size_t n, const tripod_3prs_real *X0, const tripod_3prs_real
+    *X1, const tripod_3prs_real *s, tripod_3prs_real *X, int *status);
 
 #ifdef __cplusplus
 }

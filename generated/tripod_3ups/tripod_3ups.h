@@ -107,6 +107,9 @@ typedef struct {
 extern const tripod_3ups_params tripod_3ups_default_params;
 extern const tripod_3ups_real tripod_3ups_HOME_X[TRIPOD_3UPS_NQ];
 extern const tripod_3ups_real tripod_3ups_HOME_Q[TRIPOD_3UPS_NJ];
+/* Places of the actuated joints in q, and their names, in the order of tau. */
+extern const size_t tripod_3ups_ACTUATED[TRIPOD_3UPS_NU];
+extern const char *const tripod_3ups_ACTUATOR_NAMES[TRIPOD_3UPS_NU];
 
 /* Prepare a model.  TRIPOD_3UPS_INVALID, and the model is all NaN: a parameter is not finite or beyond
    1e+12; a mass is negative; an inertia is not symmetric, or has a negative principal moment,
@@ -133,16 +136,8 @@ int tripod_3ups_H(const tripod_3ups_model *model, const tripod_3ups_real *X, tri
 size_t tripod_3ups_H_batch(const tripod_3ups_model *model, size_t n, const tripod_3ups_real *X,
     tripod_3ups_real *H, int *status);
 
-/* M, Z and H together, sharing the work. 507 mul, 354 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V
-   (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
-int tripod_3ups_dynamics(const tripod_3ups_model *model, const tripod_3ups_real *X, const
-    tripod_3ups_real *V, tripod_3ups_real *M, tripod_3ups_real *Z, tripod_3ups_real *H);
-size_t tripod_3ups_dynamics_batch(const tripod_3ups_model *model, size_t n, const tripod_3ups_real
-    *X, const tripod_3ups_real *V, tripod_3ups_real *M, tripod_3ups_real *Z, tripod_3ups_real *H,
-    int *status);
-
-/* Displacements q of all joints, on the assembly branch of home. 54 mul, 42 add, 6 div, 6 sqrt, 6
-   trig. In: X (NQ). Out: q (NJ). */
+/* Displacements q of all joints. They are those of the assembly branch of home. 54 mul, 42 add, 6
+   div, 6 sqrt, 6 trig. In: X (NQ). Out: q (NJ). */
 int tripod_3ups_inverse_kinematics(const tripod_3ups_model *model, const tripod_3ups_real *X,
     tripod_3ups_real *q);
 size_t tripod_3ups_inverse_kinematics_batch(const tripod_3ups_model *model, size_t n, const
@@ -162,6 +157,14 @@ int tripod_3ups_joint_accelerations(const tripod_3ups_model *model, const tripod
 size_t tripod_3ups_joint_accelerations_batch(const tripod_3ups_model *model, size_t n, const
     tripod_3ups_real *X, const tripod_3ups_real *V, const tripod_3ups_real *A, tripod_3ups_real
     *accelerations, int *status);
+
+/* M, Z and H together, sharing the work. 507 mul, 354 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V
+   (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
+int tripod_3ups_dynamics(const tripod_3ups_model *model, const tripod_3ups_real *X, const
+    tripod_3ups_real *V, tripod_3ups_real *M, tripod_3ups_real *Z, tripod_3ups_real *H);
+size_t tripod_3ups_dynamics_batch(const tripod_3ups_model *model, size_t n, const tripod_3ups_real
+    *X, const tripod_3ups_real *V, tripod_3ups_real *M, tripod_3ups_real *Z, tripod_3ups_real *H,
+    int *status);
 
 /* Actuator forces tau for the acceleration A, by Eq. 3. 387 mul, 297 add, 6 div, 6 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
@@ -183,8 +186,9 @@ size_t tripod_3ups_forward_dynamics_batch(const tripod_3ups_model *model, size_t
     tripod_3ups_real *X, const tripod_3ups_real *V, const tripod_3ups_real *tau, const
     tripod_3ups_real *wrench, tripod_3ups_real *A, int *status);
 
-/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
-   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
+/* A with the entries of passive extra coordinates that the others allow. It is A: there are no
+   passive extra coordinates, whose accelerations would follow. In: X (NQ), V (NV), A (NV), wrench
+   (NW, or NULL). Out: completed (NV). */
 int tripod_3ups_complete_acceleration(const tripod_3ups_model *model, const tripod_3ups_real *X,
     const tripod_3ups_real *V, const tripod_3ups_real *A, const tripod_3ups_real *wrench,
     tripod_3ups_real *completed);
@@ -192,9 +196,9 @@ size_t tripod_3ups_complete_acceleration_batch(const tripod_3ups_model *model, s
     tripod_3ups_real *X, const tripod_3ups_real *V, const tripod_3ups_real *A, const
     tripod_3ups_real *wrench, tripod_3ups_real *completed, int *status);
 
-/* Force of each leg on the platform at its platform joint, base axes. 393 mul, 291 add, 6 div, 6
-   sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
-   forces (3 x 3). */
+/* Force of each leg on the platform at its platform joint, base axes. The actuators give the
+   forces of inverse_dynamics. 393 mul, 291 add, 6 div, 6 sqrt, 0 trig; inverse dynamics apart.
+   In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (3 x 3). */
 int tripod_3ups_leg_reactions(const tripod_3ups_model *model, const tripod_3ups_real *X, const
     tripod_3ups_real *V, const tripod_3ups_real *A, const tripod_3ups_real *wrench,
     tripod_3ups_real *forces);
@@ -202,29 +206,96 @@ size_t tripod_3ups_leg_reactions_batch(const tripod_3ups_model *model, size_t n,
     tripod_3ups_real *X, const tripod_3ups_real *V, const tripod_3ups_real *A, const
     tripod_3ups_real *wrench, tripod_3ups_real *forces, int *status);
 
-/* Kinetic and potential energy; the latter is zero at the base origin. In: X (NQ), V (NV). Out:
-   kinetic (1), potential (1). */
+/* Kinetic and potential energy [J]; the latter is zero at the base origin. In: X (NQ), V (NV).
+   Out: kinetic (1), potential (1). */
 int tripod_3ups_energy(const tripod_3ups_model *model, const tripod_3ups_real *X, const
     tripod_3ups_real *V, tripod_3ups_real *kinetic, tripod_3ups_real *potential);
 size_t tripod_3ups_energy_batch(const tripod_3ups_model *model, size_t n, const tripod_3ups_real
     *X, const tripod_3ups_real *V, tripod_3ups_real *kinetic, tripod_3ups_real *potential, int
     *status);
 
-/* X at which the driven joints stand at q_actuated, by Gauss-Newton from X0; extra coordinates
-   that the drives do not determine stay. In: q_actuated (NU), X0 (NQ). Out: X (NQ). */
+/* How far a pose is from singularities: singular values of H, rows of moments divided by a
+   length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
+   distance of the platform points from their centroid, or where they coincide the rms size of the
+   legs. 73 mul, 69 add, 3 div, 13 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
+   (3), legs (3). */
+int tripod_3ups_condition(const tripod_3ups_model *model, const tripod_3ups_real *X,
+    tripod_3ups_real *sigma, tripod_3ups_real *legs);
+size_t tripod_3ups_condition_batch(const tripod_3ups_model *model, size_t n, const
+    tripod_3ups_real *X, tripod_3ups_real *sigma, tripod_3ups_real *legs, int *status);
+
+/* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
+   that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
+   X0 (NQ). Out: X (NQ). */
 int tripod_3ups_forward_kinematics(const tripod_3ups_model *model, const tripod_3ups_real
     *q_actuated, const tripod_3ups_real *X0, tripod_3ups_real *X);
 size_t tripod_3ups_forward_kinematics_batch(const tripod_3ups_model *model, size_t n, const
     tripod_3ups_real *q_actuated, const tripod_3ups_real *X0, tripod_3ups_real *X, int *status);
 
-/* Singular values of H in descending order, moment rows divided by the rms distance of the
-   platform points from their centroid; for every leg the least tested pivot as a fraction of its
-   scale. 73 mul, 69 add, 3 div, 13 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
-   sigma (3), legs (3). */
-int tripod_3ups_condition(const tripod_3ups_model *model, const tripod_3ups_real *X,
-    tripod_3ups_real *sigma, tripod_3ups_real *legs);
-size_t tripod_3ups_condition_batch(const tripod_3ups_model *model, size_t n, const
-    tripod_3ups_real *X, tripod_3ups_real *sigma, tripod_3ups_real *legs, int *status);
+/* Power that friction takes, not negative; the rate of energy is power less this. In: X (NQ), V
+   (NV). Out: dissipation (1). */
+int tripod_3ups_dissipation(const tripod_3ups_model *model, const tripod_3ups_real *X, const
+    tripod_3ups_real *V, tripod_3ups_real *dissipation);
+size_t tripod_3ups_dissipation_batch(const tripod_3ups_model *model, size_t n, const
+    tripod_3ups_real *X, const tripod_3ups_real *V, tripod_3ups_real *dissipation, int *status);
+
+/* Generalised momentum M V. 267 mul, 177 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+   momentum (NV). */
+int tripod_3ups_momentum(const tripod_3ups_model *model, const tripod_3ups_real *X, const
+    tripod_3ups_real *V, tripod_3ups_real *momentum);
+size_t tripod_3ups_momentum_batch(const tripod_3ups_model *model, size_t n, const tripod_3ups_real
+    *X, const tripod_3ups_real *V, tripod_3ups_real *momentum, int *status);
+
+/* Displacements of the actuated joints, in the order of tau. 54 mul, 42 add, 6 div, 6 sqrt, 6
+   trig. In: X (NQ). Out: q (NU). */
+int tripod_3ups_actuator_positions(const tripod_3ups_model *model, const tripod_3ups_real *X,
+    tripod_3ups_real *q);
+size_t tripod_3ups_actuator_positions_batch(const tripod_3ups_model *model, size_t n, const
+    tripod_3ups_real *X, tripod_3ups_real *q, int *status);
+
+/* Rates of the actuated joints, in the order of tau. 126 mul, 78 add, 6 div, 6 sqrt, 0 trig. In:
+   X (NQ), V (NV). Out: rates (NU). */
+int tripod_3ups_actuator_rates(const tripod_3ups_model *model, const tripod_3ups_real *X, const
+    tripod_3ups_real *V, tripod_3ups_real *rates);
+size_t tripod_3ups_actuator_rates_batch(const tripod_3ups_model *model, size_t n, const
+    tripod_3ups_real *X, const tripod_3ups_real *V, tripod_3ups_real *rates, int *status);
+
+/* Accelerations of the actuated joints, in the order of tau. 201 mul, 114 add, 6 div, 6 sqrt, 0
+   trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
+int tripod_3ups_actuator_accelerations(const tripod_3ups_model *model, const tripod_3ups_real *X,
+    const tripod_3ups_real *V, const tripod_3ups_real *A, tripod_3ups_real *accelerations);
+size_t tripod_3ups_actuator_accelerations_batch(const tripod_3ups_model *model, size_t n, const
+    tripod_3ups_real *X, const tripod_3ups_real *V, const tripod_3ups_real *A, tripod_3ups_real
+    *accelerations, int *status);
+
+/* Power that actuators give to the mechanism: tau times their rates. In: X (NQ), V (NV), tau
+   (NU). Out: power (1). */
+int tripod_3ups_power(const tripod_3ups_model *model, const tripod_3ups_real *X, const
+    tripod_3ups_real *V, const tripod_3ups_real *tau, tripod_3ups_real *power);
+size_t tripod_3ups_power_batch(const tripod_3ups_model *model, size_t n, const tripod_3ups_real
+    *X, const tripod_3ups_real *V, const tripod_3ups_real *tau, tripod_3ups_real *power, int
+    *status);
+
+/* X moved by a displacement: (t + d, exp([phi]) R, y + dy) of step = (d, phi, dy). In: X (NQ),
+   step (NV). Out: X_moved (NQ). */
+int tripod_3ups_retract(const tripod_3ups_real *X, const tripod_3ups_real *step, tripod_3ups_real
+    *X_moved);
+size_t tripod_3ups_retract_batch(size_t n, const tripod_3ups_real *X, const tripod_3ups_real
+    *step, tripod_3ups_real *X_moved, int *status);
+
+/* The displacement from X0 to X1, the inverse of retract; rotations the shorter way. In: X0 (NQ),
+   X1 (NQ). Out: step (NV). */
+int tripod_3ups_difference(const tripod_3ups_real *X0, const tripod_3ups_real *X1,
+    tripod_3ups_real *step);
+size_t tripod_3ups_difference_batch(size_t n, const tripod_3ups_real *X0, const tripod_3ups_real
+    *X1, tripod_3ups_real *step, int *status);
+
+/* X0 moved by s times the displacement to X1: straight on, turning about one axis. In: X0 (NQ),
+   X1 (NQ), s (1). Out: X (NQ). */
+int tripod_3ups_interpolate(const tripod_3ups_real *X0, const tripod_3ups_real *X1, const
+    tripod_3ups_real *s, tripod_3ups_real *X);
+size_t tripod_3ups_interpolate_batch(size_t n, const tripod_3ups_real *X0, const tripod_3ups_real
+    *X1, const tripod_3ups_real *s, tripod_3ups_real *X, int *status);
 
 #ifdef __cplusplus
 }
