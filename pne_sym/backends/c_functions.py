@@ -91,6 +91,7 @@ class _FunctionWriter:
         states = {"legs": "0", "states": "1", "count": "w", "add": "1"}
         return [
             "if (w == 1) {  /* the legs side by side */",
+            *indented(self._clear_sums(block) if len(block.sums) == 1 else []),
             f"    {over.call_with(results | legs)}",
             f"    {each}",
             f"        {place.call_with({**results, 'first': 'leg'})}",
@@ -107,6 +108,7 @@ class _FunctionWriter:
         ]
 
     def _clear_sums(self, block: Block) -> list[str]:
+        """Zeros; a single sum has them for one state too, where gcc's analyzer misses the legs'."""
         sums = f"results_{block.leg_type}.sum"
         return [f"memset({sums}, 0, sizeof {sums});"] if block.sums else []
 

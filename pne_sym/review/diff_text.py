@@ -110,7 +110,7 @@ def _cause(found: Comparison) -> str:
     bad = [b for b in found.blocks if b.verdict not in _SAME]
     if bad:
         place = next((f"; first at {f.path} {f.where}" for f in found.files if not f.accounted), "")
-        return f"{bad[0].name} has {bad[0].verdict}{place}"
+        return f"{bad[0].name}: {bad[0].verdict}{place}"
     files = [f for f in found.files if not f.accounted]
     if files:
         return (
