@@ -14,7 +14,7 @@ GENERATE = "NAME_OR_SPEC..."
 COMMANDS = ("list", "all", "check", "explain", "diff", "new", "draw")
 OPTIONS_WITH_VALUE = (
     *("--out", "-o", "--jobs", "-j", "--target"),
-    *("--stage", "--tolerance", "--legs", "--space"),
+    *("--stage", "--tolerance", "--as", "--legs", "--space"),
     *("--pose", "--q", "--path", "--fps", "--azimuth", "--elevation"),
 )
 _OF_THE_PROGRAM = ("--help", "-h", "--version")

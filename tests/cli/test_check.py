@@ -118,8 +118,8 @@ def test_the_commands_of_the_readme_work_one_after_the_other(tmp_path: Path) -> 
 
 def test_the_commands_of_the_page_on_review_work(tmp_path: Path) -> None:
     page = (Path(__file__).parents[2] / "docs/code-review.md").read_text(encoding="utf-8")
-    commands = set(re.findall(r"pne-gen check [^`\n]+", page))
-    assert len(commands) >= 2
+    commands = {c for c in re.findall(r"pne-gen check [^`\n]+", page) if "$" not in c}
+    assert len(commands) >= 2  # those of workflows are tried in tests/review
     (tmp_path / "robots").mkdir()
     own_spec(tmp_path / "robots")
     pne_gen("stewart", "robots/my_robot.toml", "--out", "generated/", cwd=tmp_path)

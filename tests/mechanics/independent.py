@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from pne_sym.model.manipulator import JointKind, PlatformJointKind
+from pne_sym.model.manipulator import Body, JointKind, PlatformJointKind
 from tests.mechanics.evaluation import Array, Names
 from tests.oracle.closure import leg_closure, perpendicular_pair
 from tests.oracle.coordinates import is_planar, joint_slices, pose_size, task_size
@@ -635,6 +635,18 @@ def _rotor(f: Facts, j: int) -> Any:
     return rotors(f.leg.joints)[j - 1]
 
 
+@value_of(r"motor_(\d+)")
+def _motor(f: Facts, j: int) -> Any:
+    return f.qd[j] / _per_turn(f, j)
+
+
+@value_of(r"per_turn_(\d+)")
+def _per_turn(f: Facts, j: int) -> Any:
+    actuator = f.leg.joints[j - 1].actuator
+    assert actuator is not None
+    return 1.0 / actuator.gear_ratio
+
+
 # ---- composite bodies ---------------------------------------------------------------------------
 
 
@@ -807,22 +819,38 @@ class PlatformFacts:
 
     @property
     def tensor(self) -> Any:
-        local = np.array(self.body.inertia, dtype=float)
+        return self._tensor(self.body)
+
+    def _tensor(self, body: Body) -> Any:
+        """Inertia about the body's own centre, base axes."""
+        local = np.array(body.inertia, dtype=float)
         if self.legs[0].planar:
             local = np.diag([0.0, 0.0, local[2, 2]])
         return self.motion.rotation @ local @ self.motion.rotation.T
 
+    @cached_property
+    def bodies(self) -> list[tuple[float, Any, Any, Any]]:
+        """Platform and payload: mass, arm, inertia, and acceleration less gravity, base axes."""
+        found = [(self.body.mass, self.arm, self.tensor, self.motion.centre_acceleration)]
+        payload = self.s.manipulator.payload
+        if payload:
+            arm = self.motion.rotation @ np.array(payload.centre_of_mass)
+            w, alpha = self.motion.angular_velocity, self.motion.angular_acceleration
+            moved = self.motion.acceleration + np.cross(alpha, arm) + np.cross(w, np.cross(w, arm))
+            found.append((payload.mass, arm, self._tensor(payload), moved))
+        return [(mass, arm, tensor, a - self.gravity) for mass, arm, tensor, a in found]
+
     @property
     def force(self) -> Any:
-        own: Array = self.body.mass * (self.motion.centre_acceleration - self.gravity)
+        own = sum(mass * a for mass, _, _, a in self.bodies)
         return own + sum(f.tip_mass * _acceleration(f) for f in self.legs)
 
     @property
     def moment(self) -> Any:
-        w, tensor = self.motion.angular_velocity, self.tensor
-        own: Array = tensor @ self.motion.angular_acceleration + np.cross(w, tensor @ w)
-        own = own + np.cross(
-            self.arm, self.body.mass * (self.motion.centre_acceleration - self.gravity)
+        w, alpha = self.motion.angular_velocity, self.motion.angular_acceleration
+        own = sum(
+            tensor @ alpha + np.cross(w, tensor @ w) + np.cross(arm, mass * a)
+            for mass, arm, tensor, a in self.bodies
         )
         return own + sum(np.cross(f.arm, f.tip_mass * _acceleration(f)) for f in self.legs)
 
@@ -835,15 +863,16 @@ def _acceleration(f: Facts) -> Any:
 
 
 def _lumped_mass(p: PlatformFacts) -> Any:
-    return p.body.mass + sum(f.tip_mass for f in p.legs)
+    return sum(mass for mass, *_ in p.bodies) + sum(f.tip_mass for f in p.legs)
 
 
 def _lumped_moment(p: PlatformFacts) -> Any:
-    return p.body.mass * p.arm + sum(f.tip_mass * f.arm for f in p.legs)
+    own = sum(mass * arm for mass, arm, *_ in p.bodies)
+    return own + sum(f.tip_mass * f.arm for f in p.legs)
 
 
 def _lumped_tensor(p: PlatformFacts) -> Any:
-    own = p.tensor + point_inertia(p.body.mass, p.arm)
+    own = sum(tensor + point_inertia(mass, arm) for mass, arm, tensor, _ in p.bodies)
     return own + sum(point_inertia(f.tip_mass, f.arm) for f in p.legs)
 
 

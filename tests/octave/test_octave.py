@@ -184,7 +184,7 @@ def test_a_search_that_begins_where_a_leg_is_singular_says_so() -> None:
     home = np.array(manipulator.home.X)
     ways = 5.0 * np.random.default_rng(0).uniform(-1.0, 1.0, (40, len(home)))
     X0 = np.concatenate((last_reachable(reference, home, ways), [home, home + 100.0]))
-    q = np.tile(m.inverse_kinematics(home)[list(m._DRIVEN_JOINTS)], (len(X0), 1))
+    q = np.tile(m.inverse_kinematics(home)[list(m.ACTUATED)], (len(X0), 1))
     call = Call(reference.functions["forward_kinematics"], {"q_actuated": q, "X0": X0})
     wanted = reference.call("forward_kinematics", **call.given).status
     assert {Status.OK, Status.UNREACHABLE, Status.SINGULAR} <= set(wanted.tolist())
@@ -203,7 +203,7 @@ def test_a_state_that_is_found_stays_as_it_is(name: str, function: str) -> None:
     rng = np.random.default_rng(2)
     sizes = np.array([1e-9, 1e-6, 1e-3, 3e-2, 1e-8, 1e-4])[:, None]
     X = m.HOME_X + sizes * rng.uniform(-1.0, 1.0, (len(sizes), m.NQ))
-    q = np.tile(m.inverse_kinematics(m.HOME_X)[list(m._DRIVEN_JOINTS)], (len(X), 1))
+    q = np.tile(m.inverse_kinematics(m.HOME_X)[list(m.ACTUATED)], (len(X), 1))
     given = {"X": X} if function == "project" else {"q_actuated": q, "X0": X}
     taken = reference.functions[function]
     calls = [Call(taken, given)]
