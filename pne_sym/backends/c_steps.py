@@ -118,6 +118,9 @@ class Steps:
         self.lanes = runs_in_lanes(function) if lanes is None else lanes
         self.w = "w" if self.lanes else "1"
         self.read = interpret.inputs_read(bundle.program, function)
+        applied = [step for step in function.steps if isinstance(step, Apply)]
+        self.used = {o.name for step in applied for o in step.operands}
+        self.used |= {o.name for o in function.outputs}
         self.at = {a.name: a.name for a in function.inputs}
         self.buffers: list[str] = []
         self.tables: list[str] = []
@@ -224,6 +227,8 @@ class Steps:
             return []
         lines = []
         for target, place in zip(step.targets, places, strict=True):
+            if target.name not in self.used:
+                continue
             self.at[target.name] = target.name
             offset = f" + {self._by(place * row)}" if place else ""
             lines.append(f"const real *const {target.name} = {self.at[value.name]}{offset};")

@@ -34,7 +34,9 @@ UNREACHABLE = (
 
 
 def is_needed(c: Case, function: str, argument: str) -> bool:
-    """Not where there is nothing to complete, or no space of forces without effect to span."""
+    """Not where nothing is to be completed, no forces without effect are spanned, nothing rubs."""
+    if function == "dissipation":
+        return any(joint.friction for leg in c.spec.legs for joint in leg.joints)
     if function == "complete_acceleration":
         return argument == "A" or c.spec.name == "stewart_sps"
     return function != "null_space" or c.model.NU > c.model.NV
@@ -43,7 +45,8 @@ def is_needed(c: Case, function: str, argument: str) -> bool:
 def spoilt(vectors: Vectors, argument: str, row: int, value: float) -> Vectors:
     """One entry of an argument in one row replaced."""
     changed = vectors[argument].copy()
-    changed[row].flat[changed[row].size // 2] = value
+    entries = changed.reshape(len(changed), -1)
+    entries[row, entries.shape[1] // 2] = value
     return vectors | {argument: changed}
 
 
@@ -213,6 +216,8 @@ def test_wrong_shapes_are_named(name: str) -> None:
     vectors = states(c, (2,))
     for function, arguments in functions(c.model).items():
         for argument in arguments:
+            if argument == "s":  # a number has no dimensions of its own
+                continue
             size = vectors[argument].shape[-1]
             wrong = vectors | {argument: np.zeros((*vectors[argument].shape[:-1], size + 1))}
             expected = (
