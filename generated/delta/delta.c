@@ -3855,6 +3855,7 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
     potential_results_rus results_rus;
     potential_before(m, w, X, s);
     if (w == 1) {  /* the legs side by side */
+        memset(results_rus.sum, 0, sizeof results_rus.sum);
         potential_legs_rus(m, 0, 1, s, 0, 3, 0, &results_rus);
         for (size_t leg = 0; leg < 3; ++leg) {
             potential_place_rus(w, &results_rus, leg, t);
@@ -4087,6 +4088,7 @@ INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, r
     condition_results_rus results_rus;
     condition_before(m, w, X, s, lengths);
     if (w == 1) {  /* the legs side by side */
+        memset(results_rus.sum, 0, sizeof results_rus.sum);
         condition_legs_rus(m, 0, 1, s, 0, 3, 0, &results_rus);
         for (size_t leg = 0; leg < 3; ++leg) {
             condition_place_rus(w, &results_rus, leg, leg, H, pivots, reach, t);

@@ -4715,6 +4715,7 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
     potential_results_rrr results_rrr;
     potential_before(m, w, X, s);
     if (w == 1) {  /* the legs side by side */
+        memset(results_rr.sum, 0, sizeof results_rr.sum);
         potential_legs_rr(m, 0, 1, s, 0, 1, 0, &results_rr);
         for (size_t leg = 0; leg < 1; ++leg) {
             potential_place_rr(w, &results_rr, leg, t);
@@ -4737,6 +4738,7 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
         }
     }
     if (w == 1) {  /* the legs side by side */
+        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
         potential_legs_rrr(m, 0, 1, s, 0, 1, 0, &results_rrr);
         for (size_t leg = 0; leg < 1; ++leg) {
             potential_place_rrr(w, &results_rrr, leg, t);
@@ -5017,6 +5019,7 @@ INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, r
     clear(reach, 2*w);
     condition_before(m, w, X, s, lengths);
     if (w == 1) {  /* the legs side by side */
+        memset(results_rr.sum, 0, sizeof results_rr.sum);
         condition_legs_rr(m, 0, 1, s, 0, 1, 0, &results_rr);
         for (size_t leg = 0; leg < 1; ++leg) {
             condition_place_rr(w, &results_rr, leg, H, Hk, pivots, t);
@@ -5039,6 +5042,7 @@ INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, r
         }
     }
     if (w == 1) {  /* the legs side by side */
+        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
         condition_legs_rrr(m, 0, 1, s, 0, 1, 0, &results_rrr);
         for (size_t leg = 0; leg < 1; ++leg) {
             condition_place_rrr(w, &results_rrr, leg, H, pivots, reach, t);

@@ -2275,6 +2275,7 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
     potential_results_rpr results_rpr;
     potential_before(m, w, X, s);
     if (w == 1) {  /* the legs side by side */
+        memset(results_rpr.sum, 0, sizeof results_rpr.sum);
         potential_legs_rpr(m, 0, 1, s, 0, 2, 0, &results_rpr);
         for (size_t leg = 0; leg < 2; ++leg) {
             potential_place_rpr(w, &results_rpr, leg, t);
@@ -2408,6 +2409,7 @@ INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, r
     clear(reach, 2*w);
     condition_before(m, w, X, s, lengths);
     if (w == 1) {  /* the legs side by side */
+        memset(results_rpr.sum, 0, sizeof results_rpr.sum);
         condition_legs_rpr(m, 0, 1, s, 0, 2, 0, &results_rpr);
         for (size_t leg = 0; leg < 2; ++leg) {
             condition_place_rpr(w, &results_rpr, leg, leg, H, pivots, t);

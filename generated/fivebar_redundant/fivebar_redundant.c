@@ -4643,6 +4643,7 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
     potential_results_rrr2 results_rrr2;
     potential_before(m, w, X, s);
     if (w == 1) {  /* the legs side by side */
+        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
         potential_legs_rrr(m, 0, 1, s, 0, 1, 0, &results_rrr);
         for (size_t leg = 0; leg < 1; ++leg) {
             potential_place_rrr(w, &results_rrr, leg, t);
@@ -4665,6 +4666,7 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
         }
     }
     if (w == 1) {  /* the legs side by side */
+        memset(results_rrr2.sum, 0, sizeof results_rrr2.sum);
         potential_legs_rrr2(m, 0, 1, s, 0, 1, 0, &results_rrr2);
         for (size_t leg = 0; leg < 1; ++leg) {
             potential_place_rrr2(w, &results_rrr2, leg, t);
@@ -4973,6 +4975,7 @@ INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, r
     condition_results_rrr2 results_rrr2;
     condition_before(m, w, X, s, lengths);
     if (w == 1) {  /* the legs side by side */
+        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
         condition_legs_rrr(m, 0, 1, s, 0, 1, 0, &results_rrr);
         for (size_t leg = 0; leg < 1; ++leg) {
             condition_place_rrr(w, &results_rrr, leg, H, pivots, reach, t);
@@ -4995,6 +4998,7 @@ INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, r
         }
     }
     if (w == 1) {  /* the legs side by side */
+        memset(results_rrr2.sum, 0, sizeof results_rrr2.sum);
         condition_legs_rrr2(m, 0, 1, s, 0, 1, 0, &results_rrr2);
         for (size_t leg = 0; leg < 1; ++leg) {
             condition_place_rrr2(w, &results_rrr2, leg, H, pivots, reach, t);

@@ -4835,6 +4835,7 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
     potential_results_pus results_pus;
     potential_before(m, w, X, s, t);
     if (w == 1) {  /* the legs side by side */
+        memset(results_pus.sum, 0, sizeof results_pus.sum);
         potential_legs_pus(m, 0, 1, s, 0, 6, 0, &results_pus);
         for (size_t leg = 0; leg < 6; ++leg) {
             potential_place_pus(w, &results_pus, leg, t);
@@ -5094,6 +5095,7 @@ INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, r
     condition_results_pus results_pus;
     condition_before(m, w, X, s, lengths, t);
     if (w == 1) {  /* the legs side by side */
+        memset(results_pus.sum, 0, sizeof results_pus.sum);
         condition_legs_pus(m, 0, 1, s, 0, 6, 0, &results_pus);
         for (size_t leg = 0; leg < 6; ++leg) {
             condition_place_pus(w, &results_pus, leg, leg, H, pivots, reach, t);

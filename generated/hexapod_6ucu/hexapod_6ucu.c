@@ -5915,6 +5915,7 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
     potential_results_upru results_upru;
     potential_before(m, w, X, s, t);
     if (w == 1) {  /* the legs side by side */
+        memset(results_upru.sum, 0, sizeof results_upru.sum);
         potential_legs_upru(m, 0, 1, s, 0, 6, 0, &results_upru);
         for (size_t leg = 0; leg < 6; ++leg) {
             potential_place_upru(w, &results_upru, leg, t);
@@ -6196,6 +6197,7 @@ INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, r
     clear(reach, 6*w);
     condition_before(m, w, X, s, lengths, t);
     if (w == 1) {  /* the legs side by side */
+        memset(results_upru.sum, 0, sizeof results_upru.sum);
         condition_legs_upru(m, 0, 1, s, 0, 6, 0, &results_upru);
         for (size_t leg = 0; leg < 6; ++leg) {
             condition_place_upru(w, &results_upru, leg, leg, H, pivots, t);

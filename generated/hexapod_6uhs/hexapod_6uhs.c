@@ -5273,6 +5273,7 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
     potential_results_uhs results_uhs;
     potential_before(m, w, X, s, t);
     if (w == 1) {  /* the legs side by side */
+        memset(results_uhs.sum, 0, sizeof results_uhs.sum);
         potential_legs_uhs(m, 0, 1, s, 0, 6, 0, &results_uhs);
         for (size_t leg = 0; leg < 6; ++leg) {
             potential_place_uhs(w, &results_uhs, leg, t);
@@ -5517,6 +5518,7 @@ INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, r
     clear(reach, 6*w);
     condition_before(m, w, X, s, lengths, t);
     if (w == 1) {  /* the legs side by side */
+        memset(results_uhs.sum, 0, sizeof results_uhs.sum);
         condition_legs_uhs(m, 0, 1, s, 0, 6, 0, &results_uhs);
         for (size_t leg = 0; leg < 6; ++leg) {
             condition_place_uhs(w, &results_uhs, leg, leg, H, pivots, t);

@@ -9813,6 +9813,7 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, const real
     potential_results_rrrrrr results_rrrrrr;
     potential_before(m, w, X, s, t);
     if (w == 1) {  /* the legs side by side */
+        memset(results_rrrrrr.sum, 0, sizeof results_rrrrrr.sum);
         potential_legs_rrrrrr(m, w, 0, 1, 0, 6, 0, joints, &results_rrrrrr);
         for (size_t leg = 0; leg < 6; ++leg) {
             potential_place_rrrrrr();
@@ -10291,6 +10292,7 @@ INLINE void condition_run(const prepared *m, size_t w, const real *X, const real
     clear(reach, 6*w);
     condition_before(m, w, X, s, lengths, t);
     if (w == 1) {  /* the legs side by side */
+        memset(results_rrrrrr.sum, 0, sizeof results_rrrrrr.sum);
         condition_legs_rrrrrr(m, w, 0, 1, s, 0, 6, 0, joints, &results_rrrrrr);
         for (size_t leg = 0; leg < 6; ++leg) {
             condition_place_rrrrrr(w, &results_rrrrrr, leg, leg, H, pivots, t);

@@ -5056,6 +5056,7 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
     potential_results_rprs results_rprs;
     potential_before(m, w, X, s, t);
     if (w == 1) {  /* the legs side by side */
+        memset(results_rprs.sum, 0, sizeof results_rprs.sum);
         potential_legs_rprs(m, 0, 1, s, 0, 3, 0, &results_rprs);
         for (size_t leg = 0; leg < 3; ++leg) {
             potential_place_rprs(w, &results_rprs, leg, t);
@@ -5354,6 +5355,7 @@ INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, r
     condition_results_rprs results_rprs;
     condition_before(m, w, X, s, lengths, t);
     if (w == 1) {  /* the legs side by side */
+        memset(results_rprs.sum, 0, sizeof results_rprs.sum);
         condition_legs_rprs(m, 0, 1, s, 0, 3, 0, &results_rprs);
         for (size_t leg = 0; leg < 3; ++leg) {
             condition_place_rprs(w, &results_rprs, leg, leg, H, pivots, reach, t);

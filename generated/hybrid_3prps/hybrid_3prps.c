@@ -4282,6 +4282,7 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
     potential_results_prps results_prps;
     potential_before(m, w, X, s, t);
     if (w == 1) {  /* the legs side by side */
+        memset(results_prps.sum, 0, sizeof results_prps.sum);
         potential_legs_prps(m, 0, 1, s, 0, 3, 0, &results_prps);
         for (size_t leg = 0; leg < 3; ++leg) {
             potential_place_prps(w, &results_prps, leg, t);
@@ -4520,6 +4521,7 @@ INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, r
     clear(reach, 3*w);
     condition_before(m, w, X, s, lengths, t);
     if (w == 1) {  /* the legs side by side */
+        memset(results_prps.sum, 0, sizeof results_prps.sum);
         condition_legs_prps(m, 0, 1, s, 0, 3, 0, &results_prps);
         for (size_t leg = 0; leg < 3; ++leg) {
             condition_place_prps(w, &results_prps, leg, leg, H, pivots, t);

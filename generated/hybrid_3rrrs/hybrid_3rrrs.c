@@ -5755,6 +5755,7 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
     potential_results_rrrs results_rrrs;
     potential_before(m, w, X, s, t);
     if (w == 1) {  /* the legs side by side */
+        memset(results_rrrs.sum, 0, sizeof results_rrrs.sum);
         potential_legs_rrrs(m, 0, 1, s, 0, 3, 0, &results_rrrs);
         for (size_t leg = 0; leg < 3; ++leg) {
             potential_place_rrrs(w, &results_rrrs, leg, t);
@@ -6078,6 +6079,7 @@ INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, r
     condition_results_rrrs results_rrrs;
     condition_before(m, w, X, s, lengths, t);
     if (w == 1) {  /* the legs side by side */
+        memset(results_rrrs.sum, 0, sizeof results_rrrs.sum);
         condition_legs_rrrs(m, 0, 1, s, 0, 3, 0, &results_rrrs);
         for (size_t leg = 0; leg < 3; ++leg) {
             condition_place_rrrs(w, &results_rrrs, leg, leg, H, pivots, reach, t);

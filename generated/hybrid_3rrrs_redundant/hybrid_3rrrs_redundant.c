@@ -10613,6 +10613,7 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
     potential_results_rrrs results_rrrs;
     potential_before(m, w, X, s, t);
     if (w == 1) {  /* the legs side by side */
+        memset(results_rrrrs.sum, 0, sizeof results_rrrrs.sum);
         potential_legs_rrrrs(m, w, 0, 1, s, 0, 1, 0, X, &results_rrrrs);
         for (size_t leg = 0; leg < 1; ++leg) {
             potential_place_rrrrs(w, &results_rrrrs, leg, t);
@@ -10635,6 +10636,7 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
         }
     }
     if (w == 1) {  /* the legs side by side */
+        memset(results_rrrs.sum, 0, sizeof results_rrrs.sum);
         potential_legs_rrrs(m, 0, 1, s, 0, 2, 0, &results_rrrs);
         for (size_t leg = 0; leg < 2; ++leg) {
             potential_place_rrrs(w, &results_rrrs, leg, t);
@@ -11237,6 +11239,7 @@ INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, r
     clear(H, 49*w);
     condition_before(m, w, X, s, lengths, t);
     if (w == 1) {  /* the legs side by side */
+        memset(results_rrrrs.sum, 0, sizeof results_rrrrs.sum);
         condition_legs_rrrrs(m, w, 0, 1, s, 0, 1, 0, X, &results_rrrrs);
         for (size_t leg = 0; leg < 1; ++leg) {
             condition_place_rrrrs(w, &results_rrrrs, leg, H, pivots, reach, t);
@@ -11259,6 +11262,7 @@ INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, r
         }
     }
     if (w == 1) {  /* the legs side by side */
+        memset(results_rrrs.sum, 0, sizeof results_rrrs.sum);
         condition_legs_rrrs(m, 0, 1, s, 0, 2, 0, &results_rrrs);
         for (size_t leg = 0; leg < 2; ++leg) {
             condition_place_rrrs(w, &results_rrrs, leg, leg, H, pivots, reach, t);

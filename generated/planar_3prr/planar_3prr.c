@@ -2854,6 +2854,7 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
     potential_results_prr results_prr;
     potential_before(m, w, X, s);
     if (w == 1) {  /* the legs side by side */
+        memset(results_prr.sum, 0, sizeof results_prr.sum);
         potential_legs_prr(m, 0, 1, s, 0, 3, 0, &results_prr);
         for (size_t leg = 0; leg < 3; ++leg) {
             potential_place_prr(w, &results_prr, leg, t);
@@ -3013,6 +3014,7 @@ INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, r
     condition_results_prr results_prr;
     condition_before(m, w, X, s, lengths);
     if (w == 1) {  /* the legs side by side */
+        memset(results_prr.sum, 0, sizeof results_prr.sum);
         condition_legs_prr(m, 0, 1, s, 0, 3, 0, &results_prr);
         for (size_t leg = 0; leg < 3; ++leg) {
             condition_place_prr(w, &results_prr, leg, leg, H, pivots, reach, t);

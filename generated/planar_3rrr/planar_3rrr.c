@@ -3273,6 +3273,7 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
     potential_results_rrr results_rrr;
     potential_before(m, w, X, s);
     if (w == 1) {  /* the legs side by side */
+        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
         potential_legs_rrr(m, 0, 1, s, 0, 3, 0, &results_rrr);
         for (size_t leg = 0; leg < 3; ++leg) {
             potential_place_rrr(w, &results_rrr, leg, t);
@@ -3460,6 +3461,7 @@ INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, r
     condition_results_rrr results_rrr;
     condition_before(m, w, X, s, lengths);
     if (w == 1) {  /* the legs side by side */
+        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
         condition_legs_rrr(m, 0, 1, s, 0, 3, 0, &results_rrr);
         for (size_t leg = 0; leg < 3; ++leg) {
             condition_place_rrr(w, &results_rrr, leg, leg, H, pivots, reach, t);

@@ -2755,6 +2755,7 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
     potential_results_rpr results_rpr;
     potential_before(m, w, X, s);
     if (w == 1) {  /* the legs side by side */
+        memset(results_rpr.sum, 0, sizeof results_rpr.sum);
         potential_legs_rpr(m, 0, 1, s, 0, 4, 0, &results_rpr);
         for (size_t leg = 0; leg < 4; ++leg) {
             potential_place_rpr(w, &results_rpr, leg, t);
@@ -2898,6 +2899,7 @@ INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, r
     clear(reach, 4*w);
     condition_before(w, X, s, lengths);
     if (w == 1) {  /* the legs side by side */
+        memset(results_rpr.sum, 0, sizeof results_rpr.sum);
         condition_legs_rpr(m, 0, 1, s, 0, 4, 0, &results_rpr);
         for (size_t leg = 0; leg < 4; ++leg) {
             condition_place_rpr(w, &results_rpr, leg, leg, H, pivots, t);

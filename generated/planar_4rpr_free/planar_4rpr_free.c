@@ -3806,6 +3806,7 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
     potential_results_rpr2 results_rpr2;
     potential_before(m, w, X, s);
     if (w == 1) {  /* the legs side by side */
+        memset(results_rpr.sum, 0, sizeof results_rpr.sum);
         potential_legs_rpr(m, 0, 1, s, 0, 3, 0, &results_rpr);
         for (size_t leg = 0; leg < 3; ++leg) {
             potential_place_rpr(w, &results_rpr, leg, t);
@@ -3828,6 +3829,7 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
         }
     }
     if (w == 1) {  /* the legs side by side */
+        memset(results_rpr2.sum, 0, sizeof results_rpr2.sum);
         potential_legs_rpr2(m, 0, 1, s, 0, 1, 0, &results_rpr2);
         for (size_t leg = 0; leg < 1; ++leg) {
             potential_place_rpr2(w, &results_rpr2, leg, t);
@@ -4038,6 +4040,7 @@ INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, r
     clear(reach, 4*w);
     condition_before(w, X, s, lengths);
     if (w == 1) {  /* the legs side by side */
+        memset(results_rpr.sum, 0, sizeof results_rpr.sum);
         condition_legs_rpr(m, 0, 1, s, 0, 3, 0, &results_rpr);
         for (size_t leg = 0; leg < 3; ++leg) {
             condition_place_rpr(w, &results_rpr, leg, leg, H, pivots, t);
@@ -4060,6 +4063,7 @@ INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, r
         }
     }
     if (w == 1) {  /* the legs side by side */
+        memset(results_rpr2.sum, 0, sizeof results_rpr2.sum);
         condition_legs_rpr2(m, 0, 1, s, 0, 1, 0, &results_rpr2);
         for (size_t leg = 0; leg < 1; ++leg) {
             condition_place_rpr2(w, &results_rpr2, leg, pivots, t);

@@ -5923,6 +5923,7 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
     potential_results_prr results_prr;
     potential_before(m, w, X, s);
     if (w == 1) {  /* the legs side by side */
+        memset(results_rpr.sum, 0, sizeof results_rpr.sum);
         potential_legs_rpr(m, 0, 1, s, 0, 1, 0, &results_rpr);
         for (size_t leg = 0; leg < 1; ++leg) {
             potential_place_rpr(w, &results_rpr, leg, t);
@@ -5945,6 +5946,7 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
         }
     }
     if (w == 1) {  /* the legs side by side */
+        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
         potential_legs_rrr(m, 0, 1, s, 0, 1, 0, &results_rrr);
         for (size_t leg = 0; leg < 1; ++leg) {
             potential_place_rrr(w, &results_rrr, leg, t);
@@ -5967,6 +5969,7 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
         }
     }
     if (w == 1) {  /* the legs side by side */
+        memset(results_prr.sum, 0, sizeof results_prr.sum);
         potential_legs_prr(m, 0, 1, s, 0, 1, 0, &results_prr);
         for (size_t leg = 0; leg < 1; ++leg) {
             potential_place_prr(w, &results_prr, leg, t);
@@ -6333,6 +6336,7 @@ INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, r
     clear(reach, 3*w);
     condition_before(m, w, X, s, lengths);
     if (w == 1) {  /* the legs side by side */
+        memset(results_rpr.sum, 0, sizeof results_rpr.sum);
         condition_legs_rpr(m, 0, 1, s, 0, 1, 0, &results_rpr);
         for (size_t leg = 0; leg < 1; ++leg) {
             condition_place_rpr(w, &results_rpr, leg, H, pivots, t);
@@ -6355,6 +6359,7 @@ INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, r
         }
     }
     if (w == 1) {  /* the legs side by side */
+        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
         condition_legs_rrr(m, 0, 1, s, 0, 1, 0, &results_rrr);
         for (size_t leg = 0; leg < 1; ++leg) {
             condition_place_rrr(w, &results_rrr, leg, H, pivots, reach, t);
@@ -6377,6 +6382,7 @@ INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, r
         }
     }
     if (w == 1) {  /* the legs side by side */
+        memset(results_prr.sum, 0, sizeof results_prr.sum);
         condition_legs_prr(m, 0, 1, s, 0, 1, 0, &results_prr);
         for (size_t leg = 0; leg < 1; ++leg) {
             condition_place_prr(w, &results_prr, leg, H, pivots, reach, t);

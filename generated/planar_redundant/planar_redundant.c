@@ -5440,6 +5440,7 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
     potential_results_rrr results_rrr;
     potential_before(m, w, X, s);
     if (w == 1) {  /* the legs side by side */
+        memset(results_prrr.sum, 0, sizeof results_prrr.sum);
         potential_legs_prrr(m, w, 0, 1, s, 0, 1, 0, X, &results_prrr);
         for (size_t leg = 0; leg < 1; ++leg) {
             potential_place_prrr(w, &results_prrr, leg, t);
@@ -5462,6 +5463,7 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
         }
     }
     if (w == 1) {  /* the legs side by side */
+        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
         potential_legs_rrr(m, 0, 1, s, 0, 2, 0, &results_rrr);
         for (size_t leg = 0; leg < 2; ++leg) {
             potential_place_rrr(w, &results_rrr, leg, t);
@@ -5785,6 +5787,7 @@ INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, r
     clear(H, 16*w);
     condition_before(m, w, X, s, lengths);
     if (w == 1) {  /* the legs side by side */
+        memset(results_prrr.sum, 0, sizeof results_prrr.sum);
         condition_legs_prrr(m, w, 0, 1, s, 0, 1, 0, X, &results_prrr);
         for (size_t leg = 0; leg < 1; ++leg) {
             condition_place_prrr(w, &results_prrr, leg, H, pivots, reach, t);
@@ -5807,6 +5810,7 @@ INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, r
         }
     }
     if (w == 1) {  /* the legs side by side */
+        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
         condition_legs_rrr(m, 0, 1, s, 0, 2, 0, &results_rrr);
         for (size_t leg = 0; leg < 2; ++leg) {
             condition_place_rrr(w, &results_rrr, leg, leg, H, pivots, reach, t);

@@ -10750,6 +10750,7 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
     potential_results_up results_up;
     potential_before(m, w, X, s, t);
     if (w == 1) {  /* the legs side by side */
+        memset(results_ups.sum, 0, sizeof results_ups.sum);
         potential_legs_ups(m, 0, 1, s, 0, 4, 0, &results_ups);
         for (size_t leg = 0; leg < 4; ++leg) {
             potential_place_ups(w, &results_ups, leg, t);
@@ -10772,6 +10773,7 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
         }
     }
     if (w == 1) {  /* the legs side by side */
+        memset(results_up.sum, 0, sizeof results_up.sum);
         potential_legs_up(m, 0, 1, s, 0, 1, 0, &results_up);
         for (size_t leg = 0; leg < 1; ++leg) {
             potential_place_up(w, &results_up, leg, t);
@@ -11382,6 +11384,7 @@ INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, r
     clear(reach, 5*w);
     condition_before(w, X, s, lengths, t);
     if (w == 1) {  /* the legs side by side */
+        memset(results_ups.sum, 0, sizeof results_ups.sum);
         condition_legs_ups(m, 0, 1, s, 0, 4, 0, &results_ups);
         for (size_t leg = 0; leg < 4; ++leg) {
             condition_place_ups(w, &results_ups, leg, leg, H, pivots, t);
@@ -11404,6 +11407,7 @@ INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, r
         }
     }
     if (w == 1) {  /* the legs side by side */
+        memset(results_up.sum, 0, sizeof results_up.sum);
         condition_legs_up(m, 0, 1, s, 0, 1, 0, &results_up);
         for (size_t leg = 0; leg < 1; ++leg) {
             condition_place_up(w, &results_up, leg, Hk, pivots, t);

@@ -4611,6 +4611,7 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
     potential_results_ups results_ups;
     potential_before(m, w, X, s, t);
     if (w == 1) {  /* the legs side by side */
+        memset(results_ups.sum, 0, sizeof results_ups.sum);
         potential_legs_ups(m, 0, 1, s, 0, 6, 0, &results_ups);
         for (size_t leg = 0; leg < 6; ++leg) {
             potential_place_ups(w, &results_ups, leg, t);
@@ -4838,6 +4839,7 @@ INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, r
     clear(reach, 6*w);
     condition_before(m, w, X, s, lengths, t);
     if (w == 1) {  /* the legs side by side */
+        memset(results_ups.sum, 0, sizeof results_ups.sum);
         condition_legs_ups(m, 0, 1, s, 0, 6, 0, &results_ups);
         for (size_t leg = 0; leg < 6; ++leg) {
             condition_place_ups(w, &results_ups, leg, leg, H, pivots, t);

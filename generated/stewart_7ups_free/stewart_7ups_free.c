@@ -6917,6 +6917,7 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
     potential_results_ups2 results_ups2;
     potential_before(m, w, X, s, t);
     if (w == 1) {  /* the legs side by side */
+        memset(results_ups.sum, 0, sizeof results_ups.sum);
         potential_legs_ups(m, 0, 1, s, 0, 6, 0, &results_ups);
         for (size_t leg = 0; leg < 6; ++leg) {
             potential_place_ups(w, &results_ups, leg, t);
@@ -6939,6 +6940,7 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
         }
     }
     if (w == 1) {  /* the legs side by side */
+        memset(results_ups2.sum, 0, sizeof results_ups2.sum);
         potential_legs_ups2(m, 0, 1, s, 0, 1, 0, &results_ups2);
         for (size_t leg = 0; leg < 1; ++leg) {
             potential_place_ups2(w, &results_ups2, leg, t);
@@ -7269,6 +7271,7 @@ INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, r
     clear(reach, 7*w);
     condition_before(w, X, s, lengths, t);
     if (w == 1) {  /* the legs side by side */
+        memset(results_ups.sum, 0, sizeof results_ups.sum);
         condition_legs_ups(m, 0, 1, s, 0, 6, 0, &results_ups);
         for (size_t leg = 0; leg < 6; ++leg) {
             condition_place_ups(w, &results_ups, leg, leg, H, pivots, t);
@@ -7291,6 +7294,7 @@ INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, r
         }
     }
     if (w == 1) {  /* the legs side by side */
+        memset(results_ups2.sum, 0, sizeof results_ups2.sum);
         condition_legs_ups2(m, 0, 1, s, 0, 1, 0, &results_ups2);
         for (size_t leg = 0; leg < 1; ++leg) {
             condition_place_ups2(w, &results_ups2, leg, pivots, t);

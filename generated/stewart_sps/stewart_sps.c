@@ -5101,6 +5101,7 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
     potential_results_urps results_urps;
     potential_before(m, w, X, s, t);
     if (w == 1) {  /* the legs side by side */
+        memset(results_urps.sum, 0, sizeof results_urps.sum);
         potential_legs_urps(m, w, 0, 1, s, 0, 6, 0, X, &results_urps);
         for (size_t leg = 0; leg < 6; ++leg) {
             potential_place_urps(w, &results_urps, leg, t);
@@ -5336,6 +5337,7 @@ INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, r
     clear(reach, 6*w);
     condition_before(m, w, X, s, lengths, t);
     if (w == 1) {  /* the legs side by side */
+        memset(results_urps.sum, 0, sizeof results_urps.sum);
         condition_legs_urps(m, w, 0, 1, s, 0, 6, 0, X, &results_urps);
         for (size_t leg = 0; leg < 6; ++leg) {
             condition_place_urps(w, &results_urps, leg, leg, H, pivots, t);

@@ -4732,6 +4732,7 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
     potential_results_prs results_prs;
     potential_before(m, w, X, s, t);
     if (w == 1) {  /* the legs side by side */
+        memset(results_prs.sum, 0, sizeof results_prs.sum);
         potential_legs_prs(m, 0, 1, s, 0, 3, 0, &results_prs);
         for (size_t leg = 0; leg < 3; ++leg) {
             potential_place_prs(w, &results_prs, leg, t);
@@ -4987,6 +4988,7 @@ INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, r
     condition_results_prs results_prs;
     condition_before(m, w, X, s, lengths, t);
     if (w == 1) {  /* the legs side by side */
+        memset(results_prs.sum, 0, sizeof results_prs.sum);
         condition_legs_prs(m, 0, 1, s, 0, 3, 0, &results_prs);
         for (size_t leg = 0; leg < 3; ++leg) {
             condition_place_prs(w, &results_prs, leg, leg, H, Hk, pivots, reach, t);

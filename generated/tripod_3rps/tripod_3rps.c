@@ -4489,6 +4489,7 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
     potential_results_rps results_rps;
     potential_before(m, w, X, s, t);
     if (w == 1) {  /* the legs side by side */
+        memset(results_rps.sum, 0, sizeof results_rps.sum);
         potential_legs_rps(m, 0, 1, s, 0, 3, 0, &results_rps);
         for (size_t leg = 0; leg < 3; ++leg) {
             potential_place_rps(w, &results_rps, leg, t);
@@ -4726,6 +4727,7 @@ INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, r
     clear(reach, 3*w);
     condition_before(m, w, X, s, lengths, t);
     if (w == 1) {  /* the legs side by side */
+        memset(results_rps.sum, 0, sizeof results_rps.sum);
         condition_legs_rps(m, 0, 1, s, 0, 3, 0, &results_rps);
         for (size_t leg = 0; leg < 3; ++leg) {
             condition_place_rps(w, &results_rps, leg, leg, H, Hk, pivots, t);

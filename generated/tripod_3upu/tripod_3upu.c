@@ -6078,6 +6078,7 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
     potential_results_upu results_upu;
     potential_before(m, w, X, s, t);
     if (w == 1) {  /* the legs side by side */
+        memset(results_upu.sum, 0, sizeof results_upu.sum);
         potential_legs_upu(m, 0, 1, s, 0, 3, 0, &results_upu);
         for (size_t leg = 0; leg < 3; ++leg) {
             potential_place_upu(w, &results_upu, leg, t);
@@ -6386,6 +6387,7 @@ INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, r
     clear(reach, 3*w);
     condition_before(m, w, X, s, lengths, t);
     if (w == 1) {  /* the legs side by side */
+        memset(results_upu.sum, 0, sizeof results_upu.sum);
         condition_legs_upu(m, 0, 1, s, 0, 3, 0, &results_upu);
         for (size_t leg = 0; leg < 3; ++leg) {
             condition_place_upu(w, &results_upu, leg, leg, H, Hk, pivots, t);

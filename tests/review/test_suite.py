@@ -86,7 +86,7 @@ EDITS: dict[str, tuple[Replaced, str, int]] = {
     "leg added": (
         (("[home]", LEG), ("    [0.0, 0.62],\n]", "    [0.0, 0.62],\n    [0.0, 0.7],\n]")),
         "leg 4 (of type rpr) added",
-        95,
+        115,
     ),
     "joint inserted": (
         (
@@ -100,7 +100,7 @@ EDITS: dict[str, tuple[Replaced, str, int]] = {
     "drive moved": (
         (("actuated = true\n", ""), ('kind = "R"\n', 'kind = "R"\nactuated = true\n')),
         "leg type rpr: actuated joint moved from joint 2 to joint 1",
-        65,
+        80,
     ),
 }
 
