@@ -2006,20 +2006,21 @@ static int close_rrrrrr(const prepared *m, const real *X, real *q)
     static const size_t rows[] = {0, 1, 2, 3, 4};
     static const int home[] = {1, 1, 1, 1, 1, 1};  /* signs of the determinants */
     enum { LEGS = 6, ROWS = 5, N = 5 };
-    real gap[LEGS*ROWS] = {0}, jacobian[LEGS*ROWS*N] = {0}, step[LEGS*N], size = 1;
+    enum { GAPS = LEGS*ROWS, SLOPES = GAPS*N, STEPS = LEGS*N };
+    real gap[GAPS] = {0}, jacobian[SLOPES] = {0}, step[STEPS], size = 1;
     for (int steps = 0; steps < 60 && size > STEADY; ++steps) {
         verdict values, *const t = &values;
         int code;
         start(1, t);
         closure_rrrrrr_run(m, 1, X, q, gap, jacobian, t);
-        check(LEGS*ROWS, 1, gap, t->overflow);
-        check(LEGS*ROWS*N, 1, jacobian, t->overflow);
+        check(GAPS, 1, gap, t->overflow);
+        check(SLOPES, 1, jacobian, t->overflow);
         judge(t, 1, &code);
         if (code != OK) {
             return 0;
         }
         size = newton_step(LEGS, ROWS, N, gap, jacobian, step);
-        for (size_t i = 0; i < LEGS*N; ++i) {
+        for (size_t i = 0; i < STEPS; ++i) {
             q[places[i]] += size > R(0.5) ? R(0.5)/size*step[i] : step[i];
         }
     }
@@ -10632,8 +10633,9 @@ static int search_mismatch(const prepared *m, const real *q0, const real *q_actu
             a[i*(NV + 1) + NV] = gap[i];
         }
         least_squares(N, NV, a, step);
-        for (int halving = 0; halving < TRIALS && !better; ++halving, part /= 2) {
+        for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
+            part /= 2;
             mismatch_any(m, trial, q0, q_actuated, next, &tried);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }

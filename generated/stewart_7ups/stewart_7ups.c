@@ -1014,7 +1014,7 @@ static void least_squares(size_t rows, size_t n, real *a, real *x)
    this rank it is not small. */
 static real rotate(size_t rows, size_t stride, size_t n, size_t rank, real *a)
 {
-    real v[BIG], first = 0, last = 0;
+    real v[BIG] = {0}, first = 0, last = 0;
     for (size_t p = 0; p < rank; ++p) {
         size_t best = 0;
         real most = 0;
@@ -5258,8 +5258,9 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
             a[i*(NV + 1) + NV] = gap[i];
         }
         least_squares(N, NV, a, step);
-        for (int halving = 0; halving < TRIALS && !better; ++halving, part /= 2) {
+        for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
+            part /= 2;
             mismatch_any(m, trial, q_actuated, next, &tried);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }

@@ -5146,8 +5146,9 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
             a[i*(NV + 1) + NV] = gap[i];
         }
         least_squares(N, NV, a, step);
-        for (int halving = 0; halving < TRIALS && !better; ++halving, part /= 2) {
+        for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
+            part /= 2;
             mismatch_any(m, trial, q_actuated, next, &tried);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
@@ -5231,8 +5232,9 @@ static int search_constraint_gap(const prepared *m, const real *start, real *fou
             a[i*(NV + 1) + NV] = gap[i];
         }
         least_squares(N, NV, a, step);
-        for (int halving = 0; halving < TRIALS && !better; ++halving, part /= 2) {
+        for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
+            part /= 2;
             constraint_gap_any(m, trial, next, &tried);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
