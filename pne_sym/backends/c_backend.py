@@ -19,7 +19,6 @@ from pne_sym.backends.c_support import needed
 from pne_sym.backends.c_text import Routine, wrapped
 from pne_sym.backends.describe import Described, describe
 from pne_sym.backends.templating import render
-from pne_sym.program import interpret, iteration, operations
 from pne_sym.program.ir import Closure
 
 _SUPPORT = ("linear", "operations", "rotations", "iteration")
@@ -140,10 +139,8 @@ def support(bundle: Bundle, big: int) -> str:
         render(
             f"c/{name}.c.jinja",
             big=big,
-            tiny=operations.TINY,
-            quaternion=sum(n in "xyz" for n in c.pose) if c.has_quaternion else None,
+            quaternion=c.position if c.has_quaternion else None,
             sizes=c.sizes,
-            found=interpret.FOUND,
         )
         for name in _SUPPORT
     )
@@ -168,8 +165,6 @@ def _closing(bundle: Bundle, closures: tuple[CClosure, ...]) -> str:
         turning=[j for c in closures for j in c.of.turning],
         given=bundle.program.given,
         sizes=bundle.coordinates.sizes,
-        steps=iteration.STEPS,
-        longest=iteration.LONGEST,
     )
 
 

@@ -308,7 +308,6 @@ class Steps:
             .outputs[0].value.size,
             trials=interpret.HALVINGS if step.halving else 1,
             close="CLOSED" if step.halving else "MET",
-            steps=interpret.SEARCH_STEPS,
             residual=residual.call_with({**found, "gap_out": "gap"}),
             slope=slope.call_with({**found, "slope_out": "slope"}),
             trial=residual.call_with({"X": "trial", "code": "&tried", "gap_out": "next"}),

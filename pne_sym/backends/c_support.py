@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
+from pne_sym.backends.templating import reached
+
 _MADE = re.compile(r"^(?:(?:INLINE|APART|static)\b[^(;]*?\b(\w+)\(|#define (\w+))", re.MULTILINE)
 _NAMED = re.compile(r"\b(\w+)\(|\b([A-Z]\w+)\b")
 
@@ -18,14 +20,8 @@ def needed(support: str, texts: Iterable[str]) -> str:
     """
     parts = support.strip().split("\n\n")
     made = {name: part for part in parts for name in _names(_MADE, part)}
-    open_ = [name for text in texts for name in _names(_NAMED, text) if name in made]
-    found = set[str]()
-    while open_:
-        part = made[open_.pop()]
-        if part not in found:
-            found.add(part)
-            open_ += [name for name in _names(_NAMED, part) if name in made]
-    return "\n\n".join(part for part in parts if part in found)
+    names = reached(texts, made, lambda text: _names(_NAMED, text))
+    return "\n\n".join(dict.fromkeys(made[name] for name in names))
 
 
 def _names(pattern: re.Pattern[str], text: str) -> set[str]:

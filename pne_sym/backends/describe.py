@@ -107,7 +107,7 @@ class Described:
     def quaternion_at(self) -> int | None:
         """Where a quaternion stands in X."""
         c = self.coordinates
-        return sum(name in "xyz" for name in c.pose) if c.has_quaternion else None
+        return c.position if c.has_quaternion else None
 
     @property
     def head(self) -> tuple[str, ...]:

@@ -29,11 +29,12 @@ class ModuleView:
     described: Described
     exported: tuple[str, ...]
     fields: tuple[FieldView, ...]
+    has_payload: bool
     relations: tuple[AxisRelation, ...]
     defaults: tuple[str, ...]
     shapes: tuple[tuple[str, tuple[int, ...]], ...]
     places: tuple[str, ...]
-    driven_joints: tuple[int, ...]
+    actuated: tuple[int, ...]
     quaternion: int | None
     given: tuple[tuple[int, int], ...]
     closures: tuple[str, ...]
@@ -71,6 +72,7 @@ class NumpyBackend:
             describe(bundle),
             exported(bundle),
             fields,
+            bundle.manipulator.payload is not None,
             tuple(bundle.derivation.parameters.relations),
             tuple(line for f in fields for line in default_lines(f)),
             _shapes(functions, bundle),

@@ -94,7 +94,7 @@ def test_a_parameters_name(monkeypatch: pytest.MonkeyPatch) -> None:
 
     def renamed(self: ParameterTable, parameter: Any) -> Any:
         if parameter.name == "platform_mass":
-            parameter = replace(parameter, name="carried_mass")
+            parameter = replace(parameter, name="payload_mass")
         return add(self, parameter)
 
     before = generated("stewart")
