@@ -5,10 +5,12 @@ from __future__ import annotations
 import copy
 import json
 import os
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from pne_sym.backends.emission import emit
@@ -20,7 +22,7 @@ from pne_sym.review.manifests import FORMATS, read_manifest
 from pne_sym.review.reproduction import reproduced
 from pne_sym.review.versions import find_version
 from tests.cli.test_diff import git
-from tests.models import bundle, catalogue
+from tests.models import bundle, catalogue, module
 from tests.review.folders import diff, edit, pair, texts, write
 
 MODEL = "planar_3rpr"
@@ -63,6 +65,10 @@ def test_folders_of_one_specification_with_another_value_are_compared(tmp_path: 
     assert "different: platform: mass 4 -> 7 kg (+75 %)\n" in done.output
     assert "platform: mass 4 -> 7 kg (+75 %)  [platform.mass]\n" in done.output
     assert "values not compared" not in done.output
+    least = np.linalg.eigvalsh(module(catalogue(MODEL)).M(module(catalogue(MODEL)).HOME_X))[0]
+    found = re.search(r"least eigenvalue of M +(\S+) -> (\S+) \(\+", done.output)
+    assert found  # with more mass it is greater
+    assert found[1] == f"{least:.4g}"
     assert "printed by this pne-gen on both sides: planar_3rpr.c, planar_3rpr.json" in done.output
     assert diff(after, spec).exit_code == 0
 
