@@ -7,14 +7,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from pne_sym.backends.bundle import Bundle
-from pne_sym.backends.describe import Described, FieldView, describe, field_views
+from pne_sym.backends.describe import Described, describe
 from pne_sym.backends.numpy_functions import FunctionText, Places
 from pne_sym.backends.numpy_public import OPERATIONS, public_text, steps_text
 from pne_sym.backends.numpy_support import needed
-from pne_sym.backends.python_public import default_lines, exported
+from pne_sym.backends.python_public import ParametersView, exported, parameters_view
 from pne_sym.backends.python_text import PythonText
 from pne_sym.backends.templating import FIXED, render
-from pne_sym.derivation import AxisRelation
 from pne_sym.program.ir import Closure
 from pne_sym.program.slices import symbols
 
@@ -28,10 +27,7 @@ class ModuleView:
 
     described: Described
     exported: tuple[str, ...]
-    fields: tuple[FieldView, ...]
-    has_payload: bool
-    relations: tuple[AxisRelation, ...]
-    defaults: tuple[str, ...]
+    parameters: ParametersView
     shapes: tuple[tuple[str, tuple[int, ...]], ...]
     places: tuple[str, ...]
     actuated: tuple[int, ...]
@@ -55,7 +51,9 @@ class NumpyBackend:
         """File name -> text."""
         view = self.view(bundle)
         return {
-            f"{bundle.name}.py": render("numpy/module.py.jinja", view=view, d=view.described),
+            f"{bundle.name}.py": render(
+                "numpy/module.py.jinja", view=view, parameters=view.parameters, d=view.described
+            ),
             "__init__.py": render("numpy/package.py.jinja", d=view.described),
         }
 
@@ -67,14 +65,10 @@ class NumpyBackend:
         texts = tuple(f.text() for f in functions)
         steps = tuple(steps_text(program, f) for f in program.public)
         public = tuple(public_text(program, f) for f in program.public if f.is_exported)
-        fields = field_views(bundle)
         return ModuleView(
             describe(bundle),
             exported(bundle),
-            fields,
-            bundle.manipulator.payload is not None,
-            tuple(bundle.derivation.parameters.relations),
-            tuple(line for f in fields for line in default_lines(f)),
+            parameters_view(bundle),
             _shapes(functions, bundle),
             places.lines(),
             tuple(c.joints.index(a) for a in c.actuators),

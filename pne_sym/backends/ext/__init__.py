@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from pne_sym.backends.bundle import Bundle
-from pne_sym.backends.describe import describe, field_views
+from pne_sym.backends.describe import describe
 from pne_sym.backends.ext.header import entries
 from pne_sym.backends.ext.public import Bindings
 from pne_sym.backends.ext.wrapper import wrapper_text
-from pne_sym.backends.python_public import default_lines, exported, takes_rotation
+from pne_sym.backends.python_public import exported, parameters_view, takes_rotation
 from pne_sym.backends.target import TargetError
 from pne_sym.backends.templating import render
 
@@ -28,16 +28,13 @@ class ExtBackend:
         bindings = Bindings(bundle, entries(c[header], bundle.name))
         wrapper = wrapper_text(bundle, bindings)
         public = [f for f in bundle.program.public if f.is_exported]
-        fields = field_views(bundle)
         files = ((header, c[header]), (source, c[source]), (f"{bundle.name}_ext.c", wrapper))
         assert not any('"""' in text for _, text in files)
         text = render(
             "ext/module.py.jinja",
             d=describe(bundle),
             exported=exported(bundle),
-            fields=fields,
-            defaults=[line for f in fields for line in default_lines(f)],
-            relations=bundle.derivation.parameters.relations,
+            parameters=parameters_view(bundle),
             rotates=any(map(takes_rotation, public)),
             measures=any(map(bindings.is_completed, public)),
             entries=[bindings.row(f) for f in public],
