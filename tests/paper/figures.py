@@ -137,7 +137,7 @@ def platform_table() -> str:
         (kind if kind == "all" else f"{kind} alone", *(_cell(spreads, kind) for spreads in wanted))
         for kind in (*ERRATA, "all")
     ]
-    head = ("left as printed", "3-PRPS, Z", "3-RPS, Z", "3-RPS, Z along the freedoms")
+    head = ("left as printed", "3-PRPS, Z", "3-RPS, Z", "3-RPS, Z along the degrees of freedom")
     return _table(head, rows)
 
 
