@@ -8,7 +8,7 @@ from typing import Any
 
 import sympy as sp
 
-from pne_sym.derivation.dimensions import Dimensions
+from pne_sym.derivation.dimensions import Dimensions, unit_of_components, unit_of_equation
 from pne_sym.derivation.equation import (
     Chapter,
     Condition,
@@ -27,7 +27,7 @@ from pne_sym.derivation.equation import (
 )
 from pne_sym.derivation.parameters import ParameterTable
 from pne_sym.vector import LinearForm, Tensor, TensorSymbol, Vector, VectorSymbol
-from pne_sym.vector.dimensions import NONE, dimension
+from pne_sym.vector.dimensions import DimensionError, dimension_of_unit
 
 
 class Book:
@@ -55,7 +55,7 @@ class Book:
         self._chapters[-1] = (id_, title, leg_type, text, equations)
 
     def note_quantity(self, quantity: Quantity) -> None:
-        """Introduce a name.
+        """Introduce a name; an entry of a parameter has that one's unit.
 
         Raises:
             ValueError: the name is taken.
@@ -63,11 +63,19 @@ class Book:
         if quantity.name in self.notation:
             raise ValueError(f"the name {quantity.name!r} is already used")
         leg_type = self._chapters[-1][2] if self._chapters else None
+        if quantity.name in self.parameters.entries:
+            field, _ = self.parameters.entries[quantity.name]
+            quantity = replace(quantity, unit=field.unit)
         self.notation[quantity.name] = replace(quantity, leg_type=leg_type or "")
 
     def give(self, symbol: Any, frame: str, components: Sequence[Any], quantity: Quantity) -> Any:
-        """Introduce a given vector, tensor or scalar with its components."""
-        self.note_quantity(quantity)
+        """Introduce a given vector, tensor or scalar with its components.
+
+        It has the unit of its components where these are parameters or numbers; else the
+        quantity says it.
+        """
+        unit = unit_of_components(components, self._units)
+        self.note_quantity(quantity if unit is None else replace(quantity, unit=unit))
         self.givens.append(Given(symbol, frame, tuple(components)))
         return symbol
 
@@ -79,7 +87,6 @@ class Book:
         title: str,
         law: Law,
         *,
-        unit: str = "",
         reference: str = "",
         body: str | None = None,
         forms: Sequence[Any] = (),
@@ -91,10 +98,14 @@ class Book:
         role: Role | None = None,
         joint: int = 0,
         remainder_of: str = "",
+        like: Any = sp.S.Zero,
     ) -> Any:
         """Append an equation that defines a new name; returns its symbol.
 
-        Without a unit the quantity has that of its right-hand side.
+        Its unit is that of the right-hand side, where that may be zero of an expression `like` it.
+
+        Raises:
+            DimensionError: dimensions in right-hand side, forms or conditions disagree.
         """
         symbol: Any
         if isinstance(rhs, Vector):
@@ -103,12 +114,17 @@ class Book:
             symbol = TensorSymbol(name, symmetric)
         else:
             symbol, rhs = sp.Symbol(name, real=True), sp.sympify(rhs)
+        try:
+            others = (*forms, like)
+            unit = unit_of_equation(rhs, others, conditions, self._units, law=law, role=role)
+        except DimensionError as error:
+            raise DimensionError(f"{name}: {error}") from None
         self.note_quantity(
             Quantity(
                 name,
                 latex,
                 title,
-                unit or self.unit_of(rhs),
+                unit,
                 body,
                 parameter,
                 role=role,
@@ -133,14 +149,18 @@ class Book:
         )
         return symbol
 
-    def unit_of(self, rhs: Any) -> str:
-        """The unit of an expression in names that stand before it, from their units.
+    def measured(
+        self, name: str, number: sp.Float, unit: str, latex: str, title: str, law: Law
+    ) -> Any:
+        """Append an equation for a number in a unit, fixed at generation."""
+        dimension_of_unit(unit)
+        symbol = self.define(name, number, latex, title, law, parameter=True)
+        self.notation[name] = replace(self.notation[name], unit=unit)
+        return symbol
 
-        Raises:
-            DimensionError: terms of a sum have different dimensions.
-        """
-        found = dimension(rhs, Dimensions(self.notation, self.parameters))
-        return found.unit if found else NONE.unit
+    @property
+    def _units(self) -> Dimensions:
+        return Dimensions(self.notation, self.parameters)
 
     def collect(self, name: str, named: LinearForm, plain: LinearForm) -> None:
         """What the rules made of a quantity: by the names of the parts, and by what they stand for.

@@ -235,23 +235,21 @@ def _rank(rows: Array) -> int:
 
 
 _TERMS = glossary(r"""
-a_c#        | \mathbf a_{c#}      | -   | given
+a_c#        | \mathbf a_{c#}      | given
     coordinate direction of the last link, to complete the leg's freedoms
-t_c#        | \mathbf t_{c#}      | m   | GEOMETRY
+t_c#        | \mathbf t_{c#}      | GEOMETRY
     velocity of the connection point as it turns about the fixed centre
-f_c#        | \mathbf f_{c#}      |     | RECIPROCITY | Eq. 35
+f_c#        | \mathbf f_{c#}      | RECIPROCITY | Eq. 35
     force part of the wrench that does no work along the leg's freedoms, #
-m#_c%       | m_{c%#}             |     | RECIPROCITY | Eq. 35
+m#_c%       | m_{c%#}             | RECIPROCITY | Eq. 35
     moment part # of the wrench that does no work along the leg's freedoms, %
-size_c#     | \ell_{c#}           |     | GEOMETRY
+size_c#     | \ell_{c#}           | GEOMETRY
     size of the %
-n_c#        | \mathbf n_{c#}      | -   | GEOMETRY | Eq. 35
+n_c#        | \mathbf n_{c#}      | GEOMETRY | Eq. 35
     unit force that the leg's freedoms leave out
-n_c#:moment | \mathbf n_{c#}      | 1/m | GEOMETRY | Eq. 35
-    force part, zero where the loops close, of the unit moment that the leg's freedoms leave out
-mu#_c%      | \mu_{c%#}           |     | GEOMETRY | Eq. 35
+mu#_c%      | \mu_{c%#}           | GEOMETRY | Eq. 35
     moment along direction # that goes with it
-mu_c#       | \boldsymbol\mu_{c#} |     | GEOMETRY | Eq. 35
+mu_c#       | \boldsymbol\mu_{c#} | GEOMETRY | Eq. 35
     the moment that goes with it
 """)
 
@@ -361,13 +359,10 @@ class _WrenchWriter:
         self, k: int, auxiliary: Auxiliary, screws: tuple[Any, Any], transmitted: int
     ) -> tuple[Any, tuple[Any, ...]]:
         """The reciprocal wrench of auxiliary direction k: force, moment amounts."""
-        of_force, of_moment = ("-", "m") if auxiliary.kind is Kind.SLIDE else ("1/m", "-")
         value = DualVector(sp.Integer(k), *screws)
-        force = self.eq("f_c#", value, k + 1, unit=of_force, body=self.frame)
+        force = self.eq("f_c#", value, k + 1, body=self.frame)
         duals = (DualScalar(sp.Integer(k), sp.Integer(i), *screws) for i in range(transmitted))
-        return force, tuple(
-            self.eq("m#_c%", dual, i, k + 1, unit=of_moment) for i, dual in enumerate(duals, 1)
-        )
+        return force, tuple(self.eq("m#_c%", dual, i, k + 1) for i, dual in enumerate(duals, 1))
 
     def of_unit_size(
         self, k: int, auxiliary: Auxiliary, force: Any, amounts: tuple[Any, ...]
@@ -375,16 +370,14 @@ class _WrenchWriter:
         """The same wrench for a force, or a moment, of size one."""
         number, acts, of_force = k + 1, auxiliary.acts, auxiliary.of_force
         size = self._size(number, auxiliary, force, amounts)
-        stem, unit = ("n_c#", "m") if of_force else ("n_c#:moment", "-")
-        n = self.eq(stem, force / size, number, body=self.frame)
+        n = self.eq("n_c#", force / size, number, body=self.frame)
         moments = tuple(
-            self.eq("mu#_c%", amount / size, i, number, unit=unit)
-            for i, amount in enumerate(amounts, 1)
+            self.eq("mu#_c%", amount / size, i, number) for i, amount in enumerate(amounts, 1)
         )
         if not moments:
             return LeftOut(n, acts=acts, of_moment=not of_force)
         total = vector_sum(m * n for m, n in zip(moments, self.directions, strict=True))
-        moment = self.eq("mu_c#", total, number, unit=unit, body=self.frame)
+        moment = self.eq("mu_c#", total, number, body=self.frame)
         return LeftOut(n, moments, moment, acts, not of_force)
 
     def _size(self, number: int, auxiliary: Auxiliary, force: Any, amounts: tuple[Any, ...]) -> Any:
@@ -394,9 +387,8 @@ class _WrenchWriter:
         else:
             size, what, slides_unit, turns_unit = _size(amounts), "moment", 1, 0
         power_of_length = slides_unit if auxiliary.kind is Kind.SLIDE else turns_unit
-        unit = {-1: "1/m", 0: "-", 1: "m"}[power_of_length]
         regular = Condition(Trouble.SINGULAR, size, self.g.size**power_of_length)
-        return self.eq("size_c#", size, number, what, unit=unit, conditions=(regular,))
+        return self.eq("size_c#", size, number, what, conditions=(regular,))
 
 
 def _size(amounts: tuple[Any, ...]) -> Any:

@@ -104,15 +104,10 @@ class CompositeWriter:
                     f"D_{{{j}{k}}}",
                     f"inertia of joint {k} along joint {j}" if j < k else f"inertia of joint {k}",
                     Law.FREEDOM,
-                    unit=self._unit(j, k),
                     reference="Sec. 2.2, joint table",
                 )
                 found[j, k] = found[k, j] = symbol
         return found
-
-    def _unit(self, j: int, k: int) -> str:
-        angles = sum(self.g.kind(i).is_angle for i in (j, k))
-        return ("kg", "kg m", "kg m^2")[angles]
 
     def _composite(self, k: int, beyond: _Body) -> _Body:
         """The links from k outwards, about the origin of link k's group."""
@@ -162,7 +157,6 @@ class CompositeWriter:
             rf"\mathbf h^c_{{{k}}}",
             f"first moment of the links from {k} outwards",
             Law.DEFINITION,
-            unit="kg m",
             body=self.g.frame("axes", self.g.group[k]),
         )
 
@@ -175,7 +169,6 @@ class CompositeWriter:
             rf"\mathbf J^c_{{{k}}}",
             f"inertia tensor of the links from {k} outwards about joint {k}",
             Law.DEFINITION,
-            unit="kg m^2",
             body=self.g.frame("axes", k),
             symmetric=True,
         )
@@ -191,7 +184,6 @@ class CompositeWriter:
             force,
             rf"\mathbf P_{{{k}}}",
             f"force that accelerates joint {k}, per unit",
-            "kg m" if g.kind(k).is_angle else "kg",
             frame,
         )
         if not g.group[k]:
@@ -201,7 +193,6 @@ class CompositeWriter:
             moment,
             rf"\mathbf L_{{{k}}}",
             f"moment about joint {g.group[k]} that accelerates joint {k}, per unit",
-            "kg m^2" if g.kind(k).is_angle else "kg m",
             frame,
         )
 
@@ -215,16 +206,13 @@ class CompositeWriter:
             total,
             rf"\mathbf L_{{{k},{group}}}",
             f"moment about joint {group} that accelerates joint {k}, per unit",
-            "kg m^2" if self.g.kind(k).is_angle else "kg m",
             self.g.frame("axes", group),
         )
 
-    def _named(self, stem: str, value: Any, latex: str, title: str, unit: str, frame: str) -> Any:
+    def _named(self, stem: str, value: Any, latex: str, title: str, frame: str) -> Any:
         if value == ZeroVector or isinstance(value, VectorSymbol):
             return value
-        return self.book.define(
-            self.g.name(stem), value, latex, title, Law.NEWTON, unit=unit, body=frame
-        )
+        return self.book.define(self.g.name(stem), value, latex, title, Law.NEWTON, body=frame)
 
     def _along(self, j: int, force: Any, moment: Any) -> Any:
         return Dot(self.g.spin(j), moment) + Dot(self.g.slide(j), force)

@@ -26,7 +26,6 @@ def write_lengths(book: Book, legs: Sequence[LegGeometry]) -> None:
         r"\mathbf b_c",
         "centroid of the platform points",
         Law.LUMPING,
-        unit="m",
         body="platform",
         parameter=True,
     )
@@ -41,7 +40,6 @@ def write_lengths(book: Book, legs: Sequence[LegGeometry]) -> None:
         r"\ell_b",
         "rms distance of the platform points from their centroid",
         Law.DEFINITION,
-        unit="m",
         parameter=True,
     )
     legs_size = book.define(
@@ -50,7 +48,6 @@ def write_lengths(book: Book, legs: Sequence[LegGeometry]) -> None:
         r"\ell_l",
         "rms size of the legs, taken where the platform points coincide",
         Law.DEFINITION,
-        unit="m",
         parameter=True,
     )
     for row, value in enumerate((spread, legs_size)):

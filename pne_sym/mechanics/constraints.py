@@ -20,26 +20,24 @@ from pne_sym.model.kinematics import at_home, chain_pose
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.vector import Cross, Dot, Vector, VectorSymbol, norm, vector_sum
 
-_POWERS_OF_METRE = ("-", "m", "m^2", "m^3")
-
 _TERMS = glossary(r"""
-n_plane    | \mathbf n                | -   | given
+n_plane    | \mathbf n                | given
     normal of the plane
-n_c        | \mathbf n_c              |     | GEOMETRY | Eq. 35
+n_c        | \mathbf n_c              | GEOMETRY | Eq. 35
     unit vector that the leg's freedoms leave out
-n_c1       | \mathbf n_c              |     | GEOMETRY | Eq. 35
+n_c1       | \mathbf n_c              | GEOMETRY | Eq. 35
     unit vector that the leg's freedoms leave out
-f_c_part   | \mathbf f'_c             |     | GEOMETRY
+f_c_part   | \mathbf f'_c             | GEOMETRY
     force that with the moment does no work along the leg's freedoms
-f_c_size   | \lVert\mathbf f'_c\rVert |     | GEOMETRY
+f_c_size   | \lVert\mathbf f'_c\rVert | GEOMETRY
     its size
-n_c:force  | \mathbf n_c              |     | GEOMETRY | Eq. 35
+n_c:force  | \mathbf n_c              | GEOMETRY | Eq. 35
     unit force that the leg's freedoms leave out
-volume_c   | \Delta_c                 |     | GEOMETRY
+volume_c   | \Delta_c                 | GEOMETRY
     triple product of the velocity vectors
-n_c:moment | \mathbf n_c              | 1/m | GEOMETRY | Eq. 35
+n_c:moment | \mathbf n_c              | GEOMETRY | Eq. 35
     force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-mu_c       | \mu_c                    |     | GEOMETRY | Eq. 35
+mu_c       | \mu_c                    | GEOMETRY | Eq. 35
     moment that goes with it
 """)
 
@@ -101,13 +99,13 @@ def wrenches_left_out(
     turning = sum(g.kind(j).is_angle for j in joints)  # velocity vectors are lengths there
     if g.pure_moment:
         return [_per_unit_moment(book, g, vector_sum(parts), volume, turning, frame, n)]
-    eq, unit = Writer(book, g, _TERMS), _POWERS_OF_METRE[turning - 1]
-    direction = eq("f_c_part", vector_sum(parts), body=frame, unit=unit)
+    eq = Writer(book, g, _TERMS)
+    direction = eq("f_c_part", vector_sum(parts), body=frame)
     squared = Dot(direction, direction)
     regular = Condition(Trouble.SINGULAR, squared, g.size ** (2 * turning - 2), 2)
-    length = eq("f_c_size", norm(direction), unit=unit, conditions=(regular,))
+    length = eq("f_c_size", norm(direction), conditions=(regular,))
     force = eq("n_c:force", direction / length, body=frame)
-    amount = eq("mu_c", volume / length, unit="m")
+    amount = eq("mu_c", volume / length)
     return [LeftOut(force, (amount,), amount * n)]
 
 
@@ -116,7 +114,7 @@ def _per_unit_moment(
 ) -> LeftOut:
     """The same wrench per unit moment, for legs whose wrench has no force part at home."""
     eq, regular = Writer(book, g, _TERMS), Condition(Trouble.SINGULAR, volume, g.size**turning)
-    scale = eq("volume_c", volume, unit=_POWERS_OF_METRE[turning], conditions=(regular,))
+    scale = eq("volume_c", volume, conditions=(regular,))
     direction: Vector = eq("n_c:moment", force / scale, body=frame)
     amount = eq("mu_c", sp.S.One)
     return LeftOut(direction, (amount,), amount * n, of_moment=True)

@@ -202,7 +202,6 @@ def _connection(book: Book, platform: PlatformMotion, g: LegGeometry) -> tuple[V
         r"\mathbf S",
         "from the base point to the connection point",
         Law.GEOMETRY,
-        unit="m",
         body="base",
         reference="Sec. 2.5, step 1.1",
         role=Role.POINT,
@@ -215,7 +214,6 @@ def _connection(book: Book, platform: PlatformMotion, g: LegGeometry) -> tuple[V
             r"\mathbf x_{1}",
             "from the origin of joint 1 to the connection point",
             Law.GEOMETRY,
-            unit="m",
             body=g.frame("axes", 0),
         )
     return S, x
@@ -285,7 +283,6 @@ def _closure_outputs(book: Book, leg: Leg, frame: str, space: TaskSpace) -> None
         r"\mathbf g",
         "from the connection point as the links reach it to the platform's",
         Law.LOOP_CLOSURE,
-        unit="m",
         body=frame,
     )
     joints = [j for j in range(1, g.count + 1) if not g.is_extra(j)]
@@ -336,9 +333,7 @@ def _dissipation(book: Book, legs: list[Leg]) -> None:
     if total == 0:
         return
     book.chapter("D", "Dissipation", "Friction times rate, of all joints; never negative.")
-    power = book.define(
-        "dissipation", total, "D", "power that friction takes", Law.FRICTION, unit="W"
-    )
+    power = book.define("dissipation", total, "D", "power that friction takes", Law.FRICTION)
     book.outputs.append(Output("dissipation", power, ((0, 0),)))
 
 
@@ -365,7 +360,7 @@ def _potential(
         if moment != ZeroVector:
             total = total + sum_over_legs(-Dot(platform.gravity, moment), leg.name)
         total = total + sum_over_legs(leg.dynamics.forces.potential, leg.name)
-    energy = book.define("potential", total, "V", "potential energy", Law.ENERGY, unit="J")
+    energy = book.define("potential", total, "V", "potential energy", Law.ENERGY)
     book.outputs.append(Output("potential", energy, ((0, 0),)))
 
 

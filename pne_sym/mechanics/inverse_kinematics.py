@@ -114,70 +114,64 @@ def given_displacements(book: Book, g: LegGeometry, reasons: dict[int, str]) -> 
 
 
 _ALONG_X, _ALONG_Y = (tuple(map(sp.Integer, axis)) for axis in ((1, 0, 0), (0, 1, 0)))
-# Units of x, of the direction u fixed in the link, and of u . x, by method.
-_UNITS = {
-    "linear": ("m", "-", "m"),
-    "sphere": ("m", "m", "m^2"),
-    "orientation": ("-", "-", "-"),
-}
 _TERMS = glossary(r"""
-x_#              | \mathbf x_{#}         | m   | GEOMETRY
+x_#              | \mathbf x_{#}         | GEOMETRY
     from the origin of joint # to the connection point
-y_#_extra        | y_{#}                 | U   | given DISPLACEMENT
+y_#_extra        | y_{#}                 | given DISPLACEMENT | U
     extra coordinate: displacement of joint #
-q_#:iterated     | q_{#}                 | U   | given DISPLACEMENT
+q_#:iterated     | q_{#}                 | given DISPLACEMENT | U
     displacement of joint #, by iteration on the loop closure
-q_#              | q_{#}                 | U   | LOOP_CLOSURE DISPLACEMENT
+q_#              | q_{#}                 | LOOP_CLOSURE DISPLACEMENT
     displacement of joint #
-c_#              | c_{#}                 |     | LOOP_CLOSURE
+c_#              | c_{#}                 | LOOP_CLOSURE
     cosine of the angle of joint # from its reference direction
-s_#              | s_{#}                 |     | LOOP_CLOSURE
+s_#              | s_{#}                 | LOOP_CLOSURE
     sine of the angle of joint # from its reference direction
-branch_#         | \sigma_{#}            | -   | given constant
+branch_#         | \sigma_{#}            | given constant
     assembly branch of joint #: +1 or -1, as at home
-ref_#            | \hat{\mathbf x}^0_{#} | -   | given
+ref_#            | \hat{\mathbf x}^0_{#} | given
     reference direction of the angle of joint #, fixed in link %
-across_#         | \hat{\mathbf y}^0_{#} | -   | given
+across_#         | \hat{\mathbf y}^0_{#} | given
     across the reference direction of joint #, fixed in link %
-link_x_#         | \hat{\mathbf x}_{#}   | -   | given
+link_x_#         | \hat{\mathbf x}_{#}   | given
     direction across axis #, fixed in link #
-link_y_#         | \hat{\mathbf y}_{#}   | -   | given
+link_y_#         | \hat{\mathbf y}_{#}   | given
     direction across axis #, fixed in link #
-un_#             | u^x_{#}               |     | LUMPING
+un_#             | u^x_{#}               | LUMPING
     component along the x axis of link # of the direction fixed in it
-um_#             | u^y_{#}               |     | LUMPING
+um_#             | u^y_{#}               | LUMPING
     component along the y axis of link # of the direction fixed in it
-uu_#             | \upsilon_{#}          |     | LUMPING
+uu_#             | \upsilon_{#}          | LUMPING
     squared length, across the axis, of the direction fixed in link #
-px_#             | x_{#}                 |     | LOOP_CLOSURE
+px_#             | x_{#}                 | LOOP_CLOSURE
     component along the reference direction
-py_#             | y_{#}                 |     | LOOP_CLOSURE
+py_#             | y_{#}                 | LOOP_CLOSURE
     component across the reference direction
-Kd_#             | K^d_{#}               | m^2 | LOOP_CLOSURE
+Kd_#             | K^d_{#}               | LOOP_CLOSURE
     projection on the centre's direction, from the distance fixed by the joints beyond joint #
-Kc_#             | K^c_{#}               |     | LOOP_CLOSURE
+Kc_#             | K^c_{#}               | LOOP_CLOSURE
     factor of the cosine in the equation of joint #
-Ks_#             | K^s_{#}               |     | LOOP_CLOSURE
+Ks_#             | K^s_{#}               | LOOP_CLOSURE
     factor of the sine in the equation of joint #
-Kr_#             | K^r_{#}               |     | LOOP_CLOSURE
+Kr_#             | K^r_{#}               | LOOP_CLOSURE
     right-hand side of the equation of joint #
-rho2_#           | \rho_{#}^2            |     | LOOP_CLOSURE
+rho2_#           | \rho_{#}^2            | LOOP_CLOSURE
     squared amplitude
-disc_#           | \Delta_{#}            |     | LOOP_CLOSURE
+disc_#           | \Delta_{#}            | LOOP_CLOSURE
     discriminant
-root_#           | r_{#}                 |     | LOOP_CLOSURE
+root_#           | r_{#}                 | LOOP_CLOSURE
     root, with the sign of the branch
-root_#:amplitude | \rho_{#}              |     | LOOP_CLOSURE
+root_#:amplitude | \rho_{#}              | LOOP_CLOSURE
     amplitude, with the sign of the branch
-root_#:nearest   | \rho_{#}              | m^2 | LOOP_CLOSURE
+root_#:nearest   | \rho_{#}              | LOOP_CLOSURE
     amplitude: off the manifold the nearest angle is taken
-xi_#             | \boldsymbol\xi_{#}    |     | LOOP_CLOSURE RESOLVED
+xi_#             | \boldsymbol\xi_{#}    | LOOP_CLOSURE RESOLVED
     the vector from joint # to the connection point, resolved along link #
-from_centre_#    | \mathbf y_{#}         | m   | GEOMETRY
+from_centre_#    | \mathbf y_{#}         | GEOMETRY
     from the centre at zero displacement to the connection point
-px_#:slide       | x_{#}                 | m   | LOOP_CLOSURE
+px_#:slide       | x_{#}                 | LOOP_CLOSURE
     component along axis #
-disc_#:slide     | \Delta_{#}            | m^2 | LOOP_CLOSURE
+disc_#:slide     | \Delta_{#}            | LOOP_CLOSURE
     discriminant of the distance equation
 """)
 
@@ -341,50 +335,47 @@ class _Solver:
     def _projection(self, j: int, x: Vector, u: Vector, value: Any, method: str) -> Vector:
         """Solve u . x = value for the angle of joint j, u turning with link j."""
         g, e = self.g, self.g.e[j]
-        of_x, of_u, of_product = _UNITS[method]
-        A, B = self._in_turning_plane(j, x, of_x)
+        A, B = self._in_turning_plane(j, x)
         n, m = self._link_axes(j)
         u_n, u_m, along_axis = self._pattern(j, method, u)
         if u_n is None:
-            u_n = self._constant_of_link("un_#", j, Dot(u, n), of_u)
+            u_n = self._constant_of_link("un_#", j, Dot(u, n))
         if u_m is None:
-            u_m = self._constant_of_link("um_#", j, Dot(u, m), of_u)
-        K = self.eq.named("Kc_#", u_n * A + u_m * B, j, unit=of_product)
-        N = self.eq.named("Ks_#", u_n * B - u_m * A, j, unit=of_product)
+            u_m = self._constant_of_link("um_#", j, Dot(u, m))
+        K = self.eq.named("Kc_#", u_n * A + u_m * B, j)
+        N = self.eq.named("Ks_#", u_n * B - u_m * A, j)
         along = sp.S.Zero if along_axis == 0 else Dot(u, e) * Dot(e, x)
-        C = self.eq.named("Kr_#", value - along, j, unit=of_product)
+        C = self.eq.named("Kr_#", value - along, j)
         root = self._turned(j, K, N, C, method)
         x_n, x_m = u_n * C + u_m * root, u_m * C - u_n * root
-        of_square = "m^2" if of_u == "m" else "-"
-        length2 = self._constant_of_link("uu_#", j, u_n**2 + u_m**2, of_square)
+        length2 = self._constant_of_link("uu_#", j, u_n**2 + u_m**2)
         value = (x_n / length2) * n + (x_m / length2) * m + Dot(e, x) * e
-        resolved: Vector = self.eq("xi_#", value, j, unit=of_x, body=g.frame("axes", j))
+        resolved: Vector = self.eq("xi_#", value, j, body=g.frame("axes", j))
         return resolved
 
-    def _in_turning_plane(self, j: int, x: Vector, unit: str) -> tuple[Any, Any]:
+    def _in_turning_plane(self, j: int, x: Vector) -> tuple[Any, Any]:
         """Components of x along and across the direction from which joint j's angle counts."""
         reference, across = self._turn_axes(j)
-        A = self.eq.named("px_#", Dot(reference, x), j, unit=unit)
-        return A, self.eq.named("py_#", Dot(across, x), j, unit=unit)
+        A = self.eq.named("px_#", Dot(reference, x), j)
+        return A, self.eq.named("py_#", Dot(across, x), j)
 
     def _turned(self, j: int, K: Any, N: Any, C: Any, method: str) -> Any:
         """Angle of joint j from K cos + N sin = C; returns the root, signed by the branch."""
-        g, of_product = self.g, _UNITS[method][2]
+        g = self.g
         power = {"linear": 1, "sphere": 2, "orientation": 0}[method]
-        unit = {0: "-", 1: "m^2", 2: "m^4"}[power]
         regular = Condition(Trouble.SINGULAR, K * K + N * N, g.size ** (2 * power), 2)
-        rho2 = self.eq.named("rho2_#", K * K + N * N, j, unit=unit, conditions=(regular,))
+        rho2 = self.eq.named("rho2_#", K * K + N * N, j, conditions=(regular,))
         sigma = self.eq.note("branch_#", j)
         c, s = sp.Symbol(g.name(f"c_{j}"), real=True), sp.Symbol(g.name(f"s_{j}"), real=True)
         self.branches.append(Branch(sigma, j, K * s - N * c, power))
         if C == 0:
             amplitude = sigma * sp.sqrt(rho2)
-            root = self.eq.named("root_#:amplitude", amplitude, j, unit=of_product)
+            root = self.eq.named("root_#:amplitude", amplitude, j)
             self._cosine_sine(j, -N / root, K / root)
             return root
         real = Condition(Trouble.UNREACHABLE, rho2 - C**2)
-        discriminant = self.eq.named("disc_#", rho2 - C**2, j, unit=unit, conditions=(real,))
-        root = self.eq.named("root_#", sigma * sp.sqrt(discriminant), j, unit=of_product)
+        discriminant = self.eq.named("disc_#", rho2 - C**2, j, conditions=(real,))
+        root = self.eq.named("root_#", sigma * sp.sqrt(discriminant), j)
         self._cosine_sine(j, (C * K - root * N) / rho2, (C * N + root * K) / rho2)
         return root
 
@@ -405,13 +396,13 @@ class _Solver:
                 return tuple(sp.S.Zero if z else None for z in zero)  # type: ignore[return-value]
         return (None, None, None)
 
-    def _constant_of_link(self, stem: str, j: int, rhs: Any, unit: str) -> Any:
+    def _constant_of_link(self, stem: str, j: int, rhs: Any) -> Any:
         """A scalar made of parameters, and of extra coordinates where joints beyond have them."""
         if rhs.is_number:
             return rhs
         beyond = range(j + 1, self.g.count + 1)
         constant = not any(map(self.g.is_extra, beyond))
-        return self.eq.named(stem, rhs, j, unit=unit, parameter=constant)
+        return self.eq.named(stem, rhs, j, parameter=constant)
 
     def _cosine_sine(self, j: int, cosine: Any, sine: Any) -> None:
         c = self.eq("c_#", cosine, j)
@@ -431,12 +422,12 @@ class _Solver:
             return x
         A, B = Dot(reference, x), Dot(across, x)
         along, aside = Dot(tip, n), Dot(tip, m)
-        length2 = self._constant_of_link("uu_#", j, along**2 + aside**2, "m^2")
+        length2 = self._constant_of_link("uu_#", j, along**2 + aside**2)
         self.methods[j] = "direct"
         if not self.constrained:
             amplitude = length2
         else:
-            squared = self.eq.named("rho2_#", (A**2 + B**2) * length2, j, unit="m^4")
+            squared = self.eq.named("rho2_#", (A**2 + B**2) * length2, j)
             regular = Condition(Trouble.SINGULAR, squared, g.size**4, 2)
             amplitude = self.eq.named("root_#:nearest", sp.sqrt(squared), j, conditions=(regular,))
         cosine, sine = along * A + aside * B, along * B - aside * A
@@ -508,7 +499,7 @@ class _Solver:
 
     def _numeric(self, j: int, reason: str = "") -> None:
         self.methods[j] = "numeric"
-        self.q[j] = sp.Symbol(self.g.name(f"q_{j}"), real=True)
+        self.q[j] = self.eq.note("q_#:iterated", j)
         self.reasons[j] = reason or (
             "no direction or distance is left unchanged by the joints beyond it"
         )

@@ -104,9 +104,7 @@ class _Writer:
                 rule=rule,
             )
         )
-        self.book.note_quantity(
-            Quantity(symbol.name, latex.format(j=j), meaning, unit, parameter=True)
-        )
+        self.book.note_quantity(Quantity(symbol.name, latex.format(j=j), meaning, parameter=True))
         return symbol
 
     def friction(self, j: int, rate: Any) -> Any:
@@ -134,7 +132,6 @@ class _Writer:
             rf"\tau^f_{{{j}}}",
             f"friction in joint {j}, against its rate",
             Law.FRICTION,
-            unit=self.g.kind(j).effort_unit,
             reference="beyond the paper",
         )
 
@@ -148,7 +145,6 @@ class _Writer:
             rf"\tau^s_{{{j}}}",
             f"force of the spring at joint {j}, against its displacement",
             Law.SPRING,
-            unit=self.g.kind(j).effort_unit,
             reference="beyond the paper",
         )
         stored = self.book.define(
@@ -156,8 +152,7 @@ class _Writer:
             force * (displacement - rest) / 2,
             f"V^s_{{{j}}}",
             f"energy of the spring at joint {j}",
-            Law.SPRING,
-            unit="J",
+            Law.ENERGY,
             reference="beyond the paper",
         )
         return force, stored
@@ -172,7 +167,6 @@ class _Writer:
             rf"J^r_{{{j}}}",
             f"inertia of the rotor of joint {j}, along the joint",
             Law.ROTOR,
-            unit="kg m^2" if self.g.kind(j).is_angle else "kg",
             parameter=True,
             reference="beyond the paper",
         )
@@ -182,7 +176,6 @@ class _Writer:
             rf"\dot\theta_{{{j}}}",
             f"rate of the motor of joint {j}",
             Law.ROTOR,
-            unit="rad/s",
             reference="beyond the paper",
         )
         inverse = self.book.define(
@@ -191,7 +184,6 @@ class _Writer:
             f"n^{{-1}}_{{{j}}}",
             f"displacement of joint {j} per angle of its motor",
             Law.LUMPING,
-            unit=f"{self.g.kind(j).unit}/rad",
             parameter=True,
         )
         return felt, turning, inverse

@@ -121,7 +121,6 @@ def _body(book: Book, g: LegGeometry, j: int, *, at_tip: bool, planar: bool) -> 
             rf"\boldsymbol\rho'_{{{j}}}",
             f"connection point to the centre of mass of link {j}",
             Law.LUMPING,
-            unit="m",
             body=frame,
             parameter=True,
         )
@@ -132,7 +131,6 @@ def _body(book: Book, g: LegGeometry, j: int, *, at_tip: bool, planar: bool) -> 
         rf"\mathbf h_{{{j}}}",
         f"first moment of link {j} about {point}",
         Law.LUMPING,
-        unit="kg m",
         body=frame,
         parameter=True,
     )
@@ -142,7 +140,6 @@ def _body(book: Book, g: LegGeometry, j: int, *, at_tip: bool, planar: bool) -> 
         rf"\mathbf J_{{{j}}}",
         f"inertia tensor of link {j} about {point}",
         Law.LUMPING,
-        unit="kg m^2",
         body=frame,
         parameter=True,
         symmetric=True,
@@ -154,7 +151,7 @@ def _link_parameters(book: Book, g: LegGeometry, j: int, *, planar: bool) -> tup
     """Mass, centre of mass and inertia tensor of link j, as its specification has them."""
     frame = g.frame("spec", g.group[j])
     (mass,) = _link_field(book, g, j, "mass", rule=Rule.MASS)
-    book.note_quantity(Quantity(mass.name, f"m_{{{j}}}", f"mass of link {j}", "kg", parameter=True))
+    book.note_quantity(Quantity(mass.name, f"m_{{{j}}}", f"mass of link {j}", parameter=True))
     centre = _link_field(book, g, j, "centre_of_mass", (2,) if planar else ())
     rule = Rule.PLANAR_INERTIA if planar else Rule.INERTIA
     entries = _link_field(book, g, j, "inertia", rule=rule)
@@ -163,8 +160,7 @@ def _link_parameters(book: Book, g: LegGeometry, j: int, *, planar: bool) -> tup
         rho,
         rf"\boldsymbol\rho_{{{j}}}",
         f"origin of link {j} to its centre of mass, fixed in the link",
-        "m",
-        frame,
+        body=frame,
         parameter=True,
     )
     inertia = g.name(f"I_{j}")
@@ -172,8 +168,7 @@ def _link_parameters(book: Book, g: LegGeometry, j: int, *, planar: bool) -> tup
         inertia,
         rf"\mathbf I_{{{j}}}",
         f"inertia tensor of link {j} about its centre of mass",
-        "kg m^2",
-        frame,
+        body=frame,
         parameter=True,
     )
     return (
@@ -255,7 +250,6 @@ class DynamicsWriter:
                 rf"\boldsymbol\varphi_{{{j}}}",
                 f"inertia force of link {j} from its turning about its reference point",
                 Law.NEWTON,
-                unit="N",
                 coefficient_latex=rf"\boldsymbol\Phi_{{{j}}}",
                 body=frame,
                 forms=(tensor @ h,),
@@ -284,7 +278,6 @@ class DynamicsWriter:
             rf"\mathbf a_{{{j}}}",
             f"acceleration of the reference point of link {j}, less gravity",
             Law.RATE,
-            unit="m/s^2",
             coefficient_latex=rf"\mathbf V_{{{j}}}",
             body=frame,
             forms=forms,
@@ -314,7 +307,6 @@ class DynamicsWriter:
             f"inertia moment of the links that turn with link {group}, about their "
             f"reference points",
             Law.EULER,
-            unit="N m",
             coefficient_latex=rf"\boldsymbol\Psi_{{{group}}}",
             body=g.frame("axes", group),
             forms=tuple(vector_sum((turning, *terms)) for terms, _ in ways),
@@ -334,7 +326,6 @@ class DynamicsWriter:
                 rf"\mathbf J^\Sigma_{{{group}}}",
                 f"inertia of the links that turn with link {group}, each about its reference point",
                 Law.LUMPING,
-                unit="kg m^2",
                 body=frame,
                 parameter=True,
                 symmetric=True,
@@ -345,7 +336,6 @@ class DynamicsWriter:
             rf"\boldsymbol\Sigma_{{{group}}}",
             f"second moment of mass of the links that turn with link {group}",
             Law.LUMPING,
-            unit="kg m^2",
             body=frame,
             parameter=True,
             symmetric=True,
@@ -371,7 +361,6 @@ class DynamicsWriter:
             rf"\mathbf h^\Sigma_{{{members[0].group}}}",
             f"first moments of the links that turn with link {members[0].group}",
             Law.LUMPING,
-            unit="kg m",
             body=g.frame("axes", members[0].group),
             parameter=True,
         )
@@ -413,8 +402,7 @@ class DynamicsWriter:
                     name,
                     rf"\mathbf{{i}}_{{{k + 1}}}",
                     "coordinate direction",
-                    "-",
-                    frame,
+                    body=frame,
                     parameter=True,
                 ),
             )
@@ -425,7 +413,6 @@ class DynamicsWriter:
             self.book.notation[J.name].latex.replace(r"\mathbf J", "j"),
             "half the trace of that inertia tensor",
             Law.LUMPING,
-            unit="kg m^2",
             parameter=True,
         )
 
@@ -464,7 +451,6 @@ class DynamicsWriter:
             rf"\mathbf f_{{{j}}}",
             f"inertia force of link {j} less its weight",
             Law.NEWTON,
-            unit="N",
             coefficient_latex=rf"\mathbf F'_{{{j}}}",
             body=self.g.frame("axes", body.group),
             reference="Eq. 1",
@@ -522,7 +508,6 @@ class DynamicsWriter:
             f"moment about joint {group} of the links from {group} outwards, the force at the "
             f"connection point left out",
             Law.EULER,
-            unit="N m",
             coefficient_latex=rf"\mathbf D_{{{group}}}",
             body=g.frame("axes", group),
             reference="Sec. 2.5, step 1.3",
@@ -539,7 +524,6 @@ class DynamicsWriter:
             rf"\mathbf T_{{{j}}}",
             f"inertia force of the links from {j} outwards, the last link left out",
             Law.NEWTON,
-            unit="N",
             coefficient_latex=rf"\mathbf C_{{{j}}}",
             body=frame,
             collected=not self.g.composite,
@@ -556,7 +540,6 @@ class DynamicsWriter:
             f"{self.g.kind(j).effort} axis {j} of the distal links' inertia and weight"
             + ", and of what acts in the joint" * (other != 0),
             Law.FREEDOM,
-            unit=self.g.kind(j).effort_unit,
             coefficient_latex=rf"\boldsymbol\gamma_{{{j}}}",
             reference="Sec. 2.2, joint table",
             accelerated=self._accelerated(j) if self.g.composite else None,
@@ -584,7 +567,6 @@ class DynamicsWriter:
                 r"\mathbf c^*",
                 "leg force on the platform without actuation, the last link's mass included",
                 Law.NEWTON,
-                unit="N",
                 body=self.k.tip_frame(),
                 reference="Eq. 3",
             )
@@ -601,7 +583,6 @@ class DynamicsWriter:
             "force at the connection point that balances the leg's "
             "inertia and weight along all freedoms",
             Law.RECIPROCITY,
-            unit="N",
             coefficient_latex=r"\mathbf C",
             body=self.k.tip_frame(),
             reference="Sec. 2.3",
@@ -619,7 +600,6 @@ class DynamicsWriter:
                 "leg force on the platform without actuation and without the mass at the "
                 "connection point",
                 Law.REDUCTION,
-                unit="N",
                 coefficient_latex=r"\mathbf K",
                 body=frame,
                 reference="Eq. 3",
@@ -634,7 +614,6 @@ class DynamicsWriter:
                 r"\mathbf Q",
                 "inertia of the leg at the connection point, without the mass gathered there",
                 Law.RULES,
-                unit="kg",
                 body=frame,
                 symmetric=True,
                 reference="Eq. 4",
@@ -652,7 +631,6 @@ class DynamicsWriter:
                 r"\mathbf U",
                 "velocity and gravity terms of the leg force",
                 Law.RULES,
-                unit="N",
                 body=self.k.tip_frame(),
                 reference="Eq. 4",
                 role=Role.LEG_BIAS,
@@ -673,7 +651,6 @@ class DynamicsWriter:
                         f"moment along moment direction {k} that balances the leg's inertia "
                         "and weight along all freedoms",
                         Law.RECIPROCITY,
-                        unit="N m",
                         coefficient_latex=rf"\mathbf c_{{m{k}}}",
                         reference="Sec. 2.2, joint table",
                     )
@@ -687,7 +664,6 @@ class DynamicsWriter:
             "moment at the connection point that balances the leg's inertia and weight along "
             "all freedoms",
             Law.RECIPROCITY,
-            unit="N m",
             coefficient_latex=r"\mathbf C_m",
             body=self.k.tip_frame(),
             reference="Sec. 2.2, joint table",
@@ -703,7 +679,6 @@ class DynamicsWriter:
             r"\mathbf c_m",
             "moment of the leg on the platform without actuation",
             Law.REDUCTION,
-            unit="N m",
             coefficient_latex=r"\mathbf K_m",
             body=self.k.tip_frame(),
             reference="Eq. 3",
@@ -720,7 +695,6 @@ class DynamicsWriter:
             rf"P_{{{j}}}",
             f"inertia and weight of the leg along the extra freedom of joint {j}",
             Law.FREEDOM,
-            unit=g.kind(j).effort_unit,
             coefficient_latex=rf"\mathbf m_{{{j}}}",
             reference="Eqs. 6, 7",
         )

@@ -40,70 +40,66 @@ from pne_sym.vector import (
     vector_sum,
 )
 
-# Units of what is reciprocal to the freedom of a joint, by whether its displacement is an angle.
-_FORCE_PART = {True: "1/m", False: "-"}
-_MOMENT_PART = {True: "-", False: "m"}
-
 _TERMS = glossary(r"""
-r_#        | \mathbf r_{#}            | m       | GEOMETRY
+r_#        | \mathbf r_{#}            | GEOMETRY
     from joint # to the connection point, along the links
-S_dot      | \dot{\mathbf S}          | m/s     | RATE POINT_VELOCITY | Sec. 2.5, step 1.1
+S_dot      | \dot{\mathbf S}          | RATE POINT_VELOCITY | Sec. 2.5, step 1.1
     velocity of the connection point
-v_#        | \mathbf v_{#}            |         | RATE | Sec. 2.2, joint table
+v_#        | \mathbf v_{#}            | RATE | Sec. 2.2, joint table
     velocity of the connection point per rate of joint #
-o_#        | \mathbf o_{#}            |         | RECIPROCITY RECIPROCAL | Sec. 2.2, joint table
+o_#        | \mathbf o_{#}            | RECIPROCITY RECIPROCAL | Sec. 2.2, joint table
     moment part of reciprocal wrench #
-n_m#       | \mathbf n_{m#}           |         | GEOMETRY | Sec. 2.2, joint table
+n_m#       | \mathbf n_{m#}           | GEOMETRY | Sec. 2.2, joint table
     direction # of the moment that the platform joint transmits
-m#_%       | m_{&#}                   |         | RECIPROCITY | Sec. 2.2, joint table
+m#_%       | m_{&#}                   | RECIPROCITY | Sec. 2.2, joint table
     moment part # of reciprocal wrench &
-S_dot_rest | \dot{\mathbf S}'         | m/s     | RATE
+S_dot_rest | \dot{\mathbf S}'         | RATE
     velocity of the connection point left to the joints that are not extra
-eta_#      | \eta_{#}                 | rad/s   | RATE
+eta_#      | \eta_{#}                 | RATE
     rate at which the joints turn along moment direction #
-qd_#       | \dot q_{#}               | U/s     | RECIPROCITY RATE
+qd_#       | \dot q_{#}               | RECIPROCITY RATE
     rate of joint #
-omega_#    | \boldsymbol\omega_{#}    | rad/s   | RATE
+omega_#    | \boldsymbol\omega_{#}    | RATE
     angular velocity of link #
-W_#        | \mathbf W_{#}            | 1/s^2   | DEFINITION symmetric
+W_#        | \mathbf W_{#}            | DEFINITION symmetric
     centripetal tensor of link #
-u_1        | \mathbf u_1              | m/s^2   | RATE | Eq. 23
+u_1        | \mathbf u_1              | RATE | Eq. 23
     centripetal acceleration of the connection point
-a_p        | \mathbf a_p              | m/s^2   | RATE COLLECTED_ACCELERATION | Eq. 23
+a_p        | \mathbf a_p              | RATE COLLECTED_ACCELERATION | Eq. 23
     acceleration of the connection point without its centripetal part
-S_ddot     | \ddot{\mathbf S}         | m/s^2   | RATE POINT_ACCELERATION | Eq. 23
+S_ddot     | \ddot{\mathbf S}         | RATE POINT_ACCELERATION | Eq. 23
     acceleration of the connection point
-zeta_#     | \boldsymbol\zeta_{#}     | rad/s^2 | RATE
+zeta_#     | \boldsymbol\zeta_{#}     | RATE
     angular acceleration of link # from the turning of axis #
-bias       | \mathfrak b              | m/s^2   | RATE BIAS | Sec. 2.2
+bias       | \mathfrak b              | RATE BIAS | Sec. 2.2
     acceleration of the connection point at zero joint accelerations
-rel        | \ddot{\mathbf S}' ; \mathbf E | m/s^2   | RATE
+rel        | \ddot{\mathbf S}' ; \mathbf E | RATE
     acceleration of the connection point left to the joint accelerations
-etad_#     | \dot\eta_{#} ; \boldsymbol\eta_{#} | rad/s^2 | RATE
+etad_#     | \dot\eta_{#} ; \boldsymbol\eta_{#} | RATE
     acceleration with which the joints turn along moment direction #
-qdd_#      | \ddot q_{#} ; \mathbf w_{#} | U/s^2   | RECIPROCITY JOINT_ACCELERATION | Eqs. 8, 9, 16
+qdd_#      | \ddot q_{#} ; \mathbf w_{#} | RECIPROCITY JOINT_ACCELERATION | Eqs. 8, 9, 16
     acceleration of joint #
-nd_m#      | \dot{\mathbf n}_{m#}     | 1/s     | RATE
+nd_m#      | \dot{\mathbf n}_{m#}     | RATE
     rate of moment direction #
-nu_#       | \nu_{#}                  | rad/s^2 | RATE | Sec. 2.2, joint table
+nu_#       | \nu_{#}                  | RATE | Sec. 2.2, joint table
     bias of the angular acceleration along moment direction #
-alpha_#    | \boldsymbol\alpha_{#} ; \boldsymbol\Omega_{#} | rad/s^2 | RATE
+alpha_#    | \boldsymbol\alpha_{#} ; \boldsymbol\Omega_{#} | RATE
     angular acceleration of link #
-a_o#       | \mathbf a_{o#} ; \mathbf V_{#} | m/s^2   | RATE
+a_o#       | \mathbf a_{o#} ; \mathbf V_{#} | RATE
     acceleration of the origin of joint #
-w_#        | \mathbf w_{#}            |         | RECIPROCITY RECIPROCAL | Sec. 2.3
+w_#        | \mathbf w_{#}            | RECIPROCITY RECIPROCAL | Sec. 2.3
     reciprocal vector %
-wn_#       | \mathbf w_{c#}           |         | RECIPROCITY RECIPROCAL | Sec. 2.3
+wn_#       | \mathbf w_{c#}           | RECIPROCITY RECIPROCAL | Sec. 2.3
     reciprocal vector %
-yd_#       | \dot y_{#}               | U/s     | given RATE
+yd_#       | \dot y_{#}               | given RATE | U/s
     rate of extra joint #
-ydd_#      | \ddot y_{#}              | U/s^2   | given JOINT_ACCELERATION
+ydd_#      | \ddot y_{#}              | given JOINT_ACCELERATION | U/s^2
     acceleration of extra joint #
-beta_#     | \boldsymbol\beta_{#}     | rad/s^2 | RATE
+beta_#     | \boldsymbol\beta_{#}     | RATE
     angular acceleration of link # at zero joint accelerations
-B_#        | \mathbf B_{#}            | 1/s^2   | DEFINITION
+B_#        | \mathbf B_{#}            | DEFINITION
     acceleration tensor of link #
-B_#_o      | \mathbf B^{\circ}_{#}    | 1/s^2   | DEFINITION
+B_#_o      | \mathbf B^{\circ}_{#}    | DEFINITION
     remainder of the acceleration tensor of link #
 """)
 _WRENCH = {"title": "force part of reciprocal wrench {k}", "reference": "Sec. 2.2, joint table"}
@@ -292,9 +288,8 @@ class MotionWriter:
         if not g.turns(j):
             return g.e[j]
         vector = Cross(g.spin(j), rods[j]) + g.slide(j)
-        named: Vector = self.eq(
-            "v_#", vector, j, body=self.tip_frame(), unit=g.kind(j).velocity_unit
-        )
+        like = g.turn(j) * g.size
+        named: Vector = self.eq("v_#", vector, j, body=self.tip_frame(), like=like)
         return named
 
     def tip_frame(self) -> str:
@@ -341,8 +336,7 @@ class MotionWriter:
         named: dict[Any, Any] = {}
         for j, own in zip(joints, amounts, strict=False):
             moment = vector_sum(m * n for m, n in zip(own, directions, strict=True))
-            unit = _MOMENT_PART[self.g.kind(j).is_angle]
-            o[j] = named[moment] = self.eq("o_#", moment, j, body=self.tip_frame(), unit=unit)
+            o[j] = named[moment] = self.eq("o_#", moment, j, body=self.tip_frame())
         return o, named
 
     def _note_basis(
@@ -393,15 +387,13 @@ class MotionWriter:
     def _moment_part(self, k: int, i: int, screw: _Screw, columns: tuple[Any, Any]) -> Any:
         value = DualScalar(sp.Integer(k - 1), sp.Integer(i - 1), *columns)
         name = screw.stem.replace("#", str(screw.number))
-        return self.eq("m#_%", value, i, name, k, unit=_MOMENT_PART[screw.is_angle])
+        return self.eq("m#_%", value, i, name, k)
 
     def _reciprocal(self, k: int, screw: _Screw, value: Any, facts: dict[str, str]) -> Any:
         """Vector k reciprocal to the others."""
         told = {name: text.format(k=k) for name, text in facts.items()}
-        unit, joint, body = _FORCE_PART[screw.is_angle], screw.joint, self.tip_frame()
-        return self.eq(
-            screw.stem, value, screw.number, k, unit=unit, joint=joint, body=body, **told
-        )
+        joint, body = screw.joint, self.tip_frame()
+        return self.eq(screw.stem, value, screw.number, k, joint=joint, body=body, **told)
 
     def _define_duals(self, vectors: list[Any], screws: list[_Screw]) -> list[Any]:
         if len(vectors) == 2:

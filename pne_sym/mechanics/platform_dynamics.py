@@ -104,7 +104,6 @@ class PlatformWriter:
             r"M^*",
             "mass of the platform with the gathered masses",
             Law.LUMPING,
-            unit="kg",
             parameter=True,
         )
         self.moment = book.define(
@@ -116,7 +115,6 @@ class PlatformWriter:
             r"\mathbf h^*",
             "first moment about the platform origin",
             Law.LUMPING,
-            unit="kg m",
             body="platform",
             parameter=True,
         )
@@ -136,7 +134,6 @@ class PlatformWriter:
             r"\mathbf J^*",
             "inertia tensor about the platform origin",
             Law.LUMPING,
-            unit="kg m^2",
             body="platform",
             parameter=True,
             symmetric=True,
@@ -157,7 +154,6 @@ class PlatformWriter:
                 r"\mathbf a_t",
                 "acceleration of the platform origin, less gravity",
                 Law.RATE,
-                unit="m/s^2",
                 body="base",
                 reference="Eq. 32",
             )
@@ -170,7 +166,6 @@ class PlatformWriter:
                 r"\mathbf f_p",
                 "inertia force of the platform less its weight",
                 Law.NEWTON,
-                unit="N",
                 body="base",
                 reference="Eq. 32",
                 forms=self._tensor_form_newton(),
@@ -188,7 +183,6 @@ class PlatformWriter:
                 r"\boldsymbol\mu_p",
                 "inertia moment of the platform less that of its weight",
                 Law.EULER,
-                unit="N m",
                 body="platform",
                 reference="Eq. 33",
             )
@@ -209,7 +203,6 @@ class PlatformWriter:
                 r"\mathbf R_t",
                 "force that actuators and external wrench must give",
                 Law.ASSEMBLY,
-                unit="N",
                 body="base",
                 reference="Eq. 32",
             )
@@ -226,7 +219,6 @@ class PlatformWriter:
                 r"\mathbf R_\alpha",
                 "moment that actuators and external wrench must give",
                 Law.ASSEMBLY,
-                unit="N m",
                 body="base",
                 reference="Eq. 33",
             )
@@ -253,7 +245,6 @@ class PlatformWriter:
                 r"\mathbf M_{tt}",
                 "translational block of M",
                 Law.ASSEMBLY,
-                unit="kg",
                 body="base",
                 symmetric=True,
                 reference="Eq. 34",
@@ -276,7 +267,6 @@ class PlatformWriter:
                 r"\mathbf M_{t\alpha}",
                 "coupling block of M",
                 Law.RULES,
-                unit="kg m",
                 body="base",
                 linear=form,
                 expanded=Cross(p.alpha, self.moment),
@@ -299,7 +289,6 @@ class PlatformWriter:
             r"\mathbf M_{\alpha\alpha}",
             "rotational block of M",
             Law.ASSEMBLY,
-            unit="kg m^2",
             body="base",
             symmetric=True,
             reference="Eq. 34",
@@ -326,7 +315,6 @@ class PlatformWriter:
                 r"\mathbf Z_p",
                 "centripetal force and weight of the platform",
                 Law.NEWTON,
-                unit="N",
                 body="base",
                 forms=forms,
                 reference="Eq. 34",
@@ -337,7 +325,6 @@ class PlatformWriter:
                 r"\mathbf Z_t",
                 "translational part of Z",
                 Law.ASSEMBLY,
-                unit="N",
                 body="base",
                 reference="Eq. 34",
             )
@@ -349,7 +336,6 @@ class PlatformWriter:
                 r"\mathbf Z_q",
                 "gyroscopic moment and moment of the weight of the platform",
                 Law.EULER,
-                unit="N m",
                 body="platform",
                 reference="Eq. 34",
             )
@@ -365,7 +351,6 @@ class PlatformWriter:
                 r"\mathbf Z_\alpha",
                 "rotational part of Z",
                 Law.ASSEMBLY,
-                unit="N m",
                 body="base",
                 reference="Eq. 34",
             )
@@ -562,7 +547,6 @@ class PlatformWriter:
             if left_out.of_moment
             else "distance by which the leg misses the platform, along a direction left out",
             Law.LOOP_CLOSURE,
-            unit="-" if left_out.of_moment else "m",
             reference="Eq. 37",
         )
         self._leg_scalar("constraints", leg, gap, places)
@@ -577,7 +561,6 @@ class PlatformWriter:
             rf"\gamma_{{{k + 1}}}",
             "part of the constraint's second derivative that does not hold the acceleration",
             Law.LOOP_CLOSURE,
-            unit="1/s^2" if left_out.of_moment else "m/s^2",
             reference="Eq. 37",
         )
         self._leg_scalar("constraint_bias", leg, bias, places)

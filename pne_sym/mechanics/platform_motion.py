@@ -68,7 +68,6 @@ def introduce_platform(book: Book, manipulator: Manipulator, space: TaskSpace) -
             r"\mathbf W_p",
             "centripetal tensor of the platform",
             Law.DEFINITION,
-            unit="1/s^2",
             body="base",
             symmetric=True,
         )
@@ -78,7 +77,6 @@ def introduce_platform(book: Book, manipulator: Manipulator, space: TaskSpace) -
             r"\mathbf B_p",
             "acceleration tensor of the platform",
             Law.DEFINITION,
-            unit="1/s^2",
             body="base",
         )
     mass, centre, inertia = _inertia(book, manipulator.platform, space, _PLATFORM)
@@ -159,8 +157,7 @@ def _motion(book: Book, manipulator: Manipulator, space: TaskSpace) -> dict[str,
                 "t",
                 r"\mathbf t",
                 "fixed centre of rotation",
-                "m",
-                "base",
+                body="base",
                 parameter=True,
                 role=Role.POSITION,
             ),
@@ -189,8 +186,7 @@ def _motion(book: Book, manipulator: Manipulator, space: TaskSpace) -> dict[str,
             "g",
             r"\mathbf g",
             Role.GRAVITY.value,
-            "m/s^2",
-            "base",
+            body="base",
             parameter=True,
             role=Role.GRAVITY,
         ),
@@ -275,7 +271,7 @@ def _inertia(book: Book, body: Body, space: TaskSpace, names: _Carried) -> tuple
         )
     )
     book.note_quantity(
-        Quantity(f"{prefix}_mass", f"M_{names.mark}", f"mass of {names.word}", "kg", parameter=True)
+        Quantity(f"{prefix}_mass", f"M_{names.mark}", f"mass of {names.word}", parameter=True)
     )
     whose = "" if names is _PLATFORM else f" of {names.word}"
     R = book.give(
@@ -286,8 +282,7 @@ def _inertia(book: Book, body: Body, space: TaskSpace, names: _Carried) -> tuple
             names.point,
             names.latex,
             f"platform origin to centre of mass{whose}",
-            "m",
-            "platform",
+            body="platform",
             parameter=True,
         ),
     )
@@ -311,8 +306,7 @@ def _inertia(book: Book, body: Body, space: TaskSpace, names: _Carried) -> tuple
             names.tensor,
             rf"\mathbf I_{names.mark}",
             f"inertia tensor of {names.word} about its centre of mass",
-            "kg m^2",
-            "platform",
+            body="platform",
             parameter=True,
         ),
     )

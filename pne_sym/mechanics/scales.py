@@ -79,26 +79,20 @@ def with_size(book: Book, g: LegGeometry, home: HomeLengths) -> LegGeometry:
     slides = any(g.slides(j) for j in range(min(turning, default=1), g.count + 1))
     squares = [_across_square(g, group, turning[0]) for group in turning]
     squares += [pitch**2 for pitch in g.pitch.values()]
-    fixed = sp.Float(home.arm if slides else home.least)
+    number = sp.Float(home.arm if slides else home.least)
     live = sp.Add(*squares)
-    if live != 0:
-        title = (
-            "largest lever arm at home, which slides make"
-            if slides
-            else "a thousandth of the largest lever arm at home, so that no offset is needed"
-        )
-        fixed = book.define(
-            g.name("size_0"), fixed, r"\ell_0", title, Law.LUMPING, unit="m", parameter=True
-        )
-    size = book.define(
-        g.name("size"),
-        sp.sqrt(fixed**2 + live) if live != 0 else fixed,
-        r"\ell",
-        "length of the leg's lever arms, the measure of what is near singular",
-        Law.LUMPING,
-        unit="m",
-        parameter=True,
+    name, latex, law = g.name("size"), r"\ell", Law.LUMPING
+    title = "length of the leg's lever arms, the measure of what is near singular"
+    if live == 0:
+        size = book.measured(name, number, "m", latex, title, law)
+        return replace(g, size=size, arm=home.arm)
+    what = (
+        "largest lever arm at home, which slides make"
+        if slides
+        else "a thousandth of the largest lever arm at home, so that no offset is needed"
     )
+    fixed = book.measured(g.name("size_0"), number, "m", r"\ell_0", what, law)
+    size = book.define(name, sp.sqrt(fixed**2 + live), latex, title, law, parameter=True)
     return replace(g, size=size, arm=home.arm)
 
 

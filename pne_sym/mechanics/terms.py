@@ -1,8 +1,8 @@
 """What the quantities of a leg are called: tables beside the equations that define them.
 
-A row has name | symbol | unit | law, role, marks | reference; below it stands the meaning.  The
+A row has name | symbol | law, role, marks | reference; below it stands the meaning.  The
 marks # % & stand for numbers, of joints mostly: `v_#` is `v_2` for joint 2.  What has no law
-is given; without a unit it has that of its right-hand side.  After a
+is given; where a reference would stand is the unit of a coordinate.  After a
 colon a name may say which of several rows it is.  After a semicolon stands
 the symbol of the first coefficient of what depends on the acceleration.
 """
@@ -29,14 +29,14 @@ class Term:
     """A row of a table.
 
     Attributes:
-        latex, unit, law, role, reference, meaning: of the quantity.
+        latex, law, role, reference, meaning: of the quantity.
+        unit: of a coordinate; U is that of its joint's displacement.
         coefficient: LaTeX of its first coefficient.
         parameter: it is constant: made of parameters alone.
         symmetric: it is a symmetric tensor.
     """
 
     latex: str
-    unit: str
     law: Law | None
     role: Role | None
     reference: str
@@ -44,6 +44,7 @@ class Term:
     coefficient: str = ""
     parameter: bool = False
     symmetric: bool = False
+    unit: str = ""
 
     def numbered(self, numbers: Sequence[Any]) -> Term:
         """With numbers in the places of the marks."""
@@ -75,21 +76,21 @@ def glossary(table: str) -> dict[str, Term]:
 
 
 def _term(cells: list[str], meaning: str) -> Term:
-    latex, unit, facts, reference = (*cells, "", "")[:4]
+    latex, facts, reference = (*cells, "")[:3]
     latex, _, coefficient = (part.strip() for part in latex.partition(" ; "))
     first, *words = facts.split()
     law = None if first == "given" else Law[first]
     roles = [Role[word] for word in words if word in Role.__members__]
     return Term(
         latex,
-        unit,
         law,
         roles[0] if roles else None,
-        reference,
+        reference if law else "",
         meaning,
         coefficient,
         "constant" in words,
         "symmetric" in words,
+        "" if law else reference,
     )
 
 
@@ -150,7 +151,6 @@ class Writer:
         """LaTeX, title, law and what else is told of a quantity."""
         term = self.table[stem].numbered(numbers)
         told = {
-            "unit": self._unit(term, numbers),
             "reference": term.reference,
             "role": term.role,
             "joint": numbers[0] if term.role and numbers else 0,
@@ -163,10 +163,8 @@ class Writer:
         return told.pop("latex", term.latex), told.pop("title", term.meaning), law, told
 
     def _unit(self, term: Term, numbers: Sequence[Any]) -> str:
-        """Its unit; U in the table is that of the joint's displacement."""
-        return (
-            term.unit.replace("U", self.g.kind(numbers[0]).unit) if "U" in term.unit else term.unit
-        )
+        """Unit of what is given, where it has no components that tell."""
+        return term.unit.replace("U", self.g.kind(numbers[0]).unit) if term.unit else "-"
 
     def give(self, stem: str, frame: str, components: Iterable[Any], *numbers: Any) -> VectorSymbol:
         """Introduce a vector with its components, fixed in a frame; returns its symbol."""

@@ -43,8 +43,17 @@ class Dimension:
 
     @property
     def unit(self) -> str:
-        """As a unit; "-" where there is none."""
-        return "-" if self == Dimension() else str(self)
+        """As people write it, forces in newton; "-" where there is none.
+
+        >>> print(dimension_of_unit("kg m^2/s^2").unit)
+        N m
+        """
+        if self == NONE:
+            return "-"
+        if self.kg != 1 or self.s > -2:
+            return str(self)
+        rest = self / _NEWTON
+        return "N" if rest == NONE else _WITH_NEWTON.get(rest, f"N {rest}")
 
     def __str__(self) -> str:
         powers = (("kg", self.kg), ("m", self.m), ("s", self.s))
@@ -58,6 +67,7 @@ NONE = Dimension()
 _ONE = Fraction(1)
 _KG, _M, _S = Dimension(kg=_ONE), Dimension(m=_ONE), Dimension(s=_ONE)
 _NEWTON = _KG * _M / _S / _S
+_WITH_NEWTON = {_M: "N m", NONE / _M: "N/m", _S / _M: "N s/m", _M / _S: "W"}
 _UNITS = {
     "-": NONE,
     "1": NONE,
@@ -91,7 +101,11 @@ def dimension_of_unit(unit: str) -> Dimension:
     return result
 
 
-def dimension(expr: Any, units: Mapping[str, Dimension]) -> Dimension | None:
+Units = Mapping[str, Dimension | None]
+"""Dimensions by name; None for what is zero."""
+
+
+def dimension(expr: Any, units: Units) -> Dimension | None:
     """Dimension of an expression; None for zero, which has every dimension.
 
     Args:
@@ -117,7 +131,7 @@ def dimension(expr: Any, units: Mapping[str, Dimension]) -> Dimension | None:
     return _of_parts(expr, units)
 
 
-def _of_parts(expr: Any, units: Mapping[str, Dimension]) -> Dimension | None:
+def _of_parts(expr: Any, units: Units) -> Dimension | None:
     """Dimension of a node that is made of its arguments' dimensions."""
     if isinstance(expr, _LEG_SUMS):
         return dimension(expr.args[0], units)
@@ -136,7 +150,7 @@ def _of_parts(expr: Any, units: Mapping[str, Dimension]) -> Dimension | None:
 
 _LEG_SUMS = (n.LegSum, n.VectorLegSum, n.TensorLegSum)
 _ANGLES = (sp.sin, sp.cos, sp.acos, sp.atan2)
-_SUMS = (sp.Add, n.VectorAdd, n.TensorAdd)
+_SUMS = (sp.Add, n.VectorAdd, n.TensorAdd, sp.Abs, sp.Min, sp.Max)
 _PRODUCTS = (
     sp.Mul,
     n.VectorScale,
@@ -174,30 +188,13 @@ def _product(parts: list[Dimension | None]) -> Dimension | None:
     return result
 
 
-def _reciprocal(expr: Any, units: Mapping[str, Dimension]) -> Dimension | None:
-    """Of w_k, one over that of v_k; of m_ki, such that m_ki E_ij is like w_k . v_j."""
+def _reciprocal(expr: Any, units: Units) -> Dimension | None:
+    """Of w_k, one over that of v_k; of m_ki that times a length: E_ik times one is like v_k."""
     *indices, vectors, rows = expr.args
-    columns = [dimension(v, units) for v in vectors]
-    entries = [[dimension(e, units) for e in row] for row in rows]
     k = int(indices[0])
-    own = columns[k]
-    if own is None:  # a pure turn, or a pure moment
-        row, turn = next((row, row[k]) for row in entries if row[k] is not None)
-        velocity, unit = _first_pair(columns, row)
-        force = NONE / (turn or NONE) * unit / velocity
-    else:
-        force = NONE / own
-    if len(indices) == 1:
-        return force
-    velocity, turn = _first_pair(columns, entries[int(indices[1])])
-    return force * velocity / turn
-
-
-def _first_pair(
-    columns: list[Dimension | None], row: list[Dimension | None]
-) -> tuple[Dimension, Dimension]:
-    """Dimensions of v_j and E_ij of a column that has both."""
-    for velocity, turn in zip(columns, row, strict=True):
-        if velocity is not None and turn is not None:
-            return velocity, turn
-    return _M, NONE
+    velocity = dimension(vectors[k], units)
+    if velocity is None:  # a pure turn, or a pure moment
+        turns = (dimension(row[k], units) for row in rows)
+        velocity = next((turn for turn in turns if turn is not None), NONE) * _M
+    force = NONE / velocity
+    return force if len(indices) == 1 else force * _M

@@ -95,8 +95,3 @@ class JointKind(WrittenJoint):
     def effort_unit(self) -> str:
         """Of what does work along it."""
         return "N m" if self.is_angle else "N"
-
-    @property
-    def velocity_unit(self) -> str:
-        """Of a point's velocity per unit rate."""
-        return "m" if self.is_angle else "-"
