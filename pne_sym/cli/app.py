@@ -14,7 +14,7 @@ import typer.core
 
 from pne_sym import comparison, writer
 from pne_sym.backends import registry
-from pne_sym.cli import drawing, listing, review, starter
+from pne_sym.cli import drawing, homes, listing, review, starter
 from pne_sym.cli.arguments import COMMANDS, GENERATE
 from pne_sym.cli.console import Report
 from pne_sym.cli.faults import DIFFERENT, told
@@ -98,6 +98,7 @@ Examples:
   pne-gen stewart --target numpy,c,xp      other code too
   pne-gen check stewart --out generated/   is what stands there up to date?
   pne-gen list                             what the catalogue has
+  pne-gen home my_robot.toml               closures of the legs at home, all of them
   pne-gen draw stewart --out stewart.svg   a picture of it; --pose, --path
   pne-gen explain stewart ups-K5           an equation: law, uses, users, code
   pne-gen diff HEAD:my_robot.toml my_robot.toml   what a change means
@@ -224,6 +225,7 @@ def check(
 
 
 app.command("new")(starter.new)
+app.command("home")(homes.home)
 app.command("explain")(review.explain)
 app.command("diff")(review.diff)
 app.command("draw")(drawing.draw)

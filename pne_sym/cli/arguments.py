@@ -11,7 +11,7 @@ from collections.abc import Sequence
 GENERATE = "NAME_OR_SPEC..."
 """Name of the command that is meant where a model stands; no model can have it."""
 
-COMMANDS = ("list", "all", "check", "explain", "diff", "new", "draw")
+COMMANDS = ("list", "all", "check", "explain", "diff", "new", "home", "draw")
 OPTIONS_WITH_VALUE = (
     *("--out", "-o", "--jobs", "-j", "--target"),
     *("--stage", "--tolerance", "--as", "--legs", "--space"),

@@ -63,6 +63,11 @@ def print_warning(message: str) -> None:
     _print(sys.stderr, "pne-gen: warning: ", message, "yellow")
 
 
+def print_note(message: str) -> None:
+    """Print what was chosen for the user on standard error."""
+    _print(sys.stderr, "pne-gen: ", message, "cyan")
+
+
 class Report:
     """Says what is being done and what came out.
 

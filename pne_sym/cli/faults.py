@@ -12,7 +12,7 @@ from typing import TextIO
 import typer
 
 from pne_sym.backends.target import TargetError
-from pne_sym.cli.console import discard_output, flush_output, print_error, print_warning
+from pne_sym.cli.console import discard_output, flush_output, print_error, print_note, print_warning
 from pne_sym.writer import OutputError
 
 DIFFERENT = 1
@@ -34,11 +34,12 @@ def told(*, debug: bool) -> Iterator[None]:
         typer.Exit: with the exit code, for any error.
     """
     from pne_sym.generation import InputError
-    from pne_sym.model.errors import SpecError, SpecWarning
+    from pne_sym.model.errors import SpecError, SpecNote, SpecWarning
 
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("always", SpecWarning)
+            warnings.simplefilter("always", SpecNote)
             warnings.showwarning = _show_warning
             with _output_complete():
                 yield
@@ -88,9 +89,12 @@ def _show_warning(
     line: str | None = None,
 ) -> None:
     """Print a warning in one line; one that is not about the input with its class."""
-    from pne_sym.model.errors import SpecWarning
+    from pne_sym.model.errors import SpecNote, SpecWarning
 
     del filename, lineno, file, line
+    if issubclass(category, SpecNote):
+        print_note(f"{message}")
+        return
     print_warning(
         f"{message}" if issubclass(category, SpecWarning) else f"{category.__name__}: {message}"
     )

@@ -17,6 +17,8 @@ Residual = Callable[[Array], Array]
 Step = Callable[[Array], Array]
 Move = Callable[[Array, Array], Array]
 
+CLOSED = 1e-12
+"""Gap to which a home is polished, relative to the size where that exceeds 1 m."""
 MAX_ITERATIONS = 30
 _HALVINGS = 8
 _LARGEST_STEP = 0.3

@@ -46,6 +46,10 @@ class SpecWarning(UserWarning):
     """A specification that can be used, though probably not as it was meant."""
 
 
+class SpecNote(UserWarning):
+    """What a specification leaves to the program, and what the program chose."""
+
+
 def printable(text: str, limit: int = 200) -> str:
     """The text on one line, without control characters, shortened to `limit`."""
     clean = "".join(c if c.isprintable() else "?" for c in text[:limit])

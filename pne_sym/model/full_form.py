@@ -34,7 +34,7 @@ def to_full_form(manipulator: Manipulator) -> Plain:
     if m.payload is not None:
         form["platform"] = _body(m.platform) | {"payload": _body(m.payload)}
     form["legs"] = [_leg(leg) for leg in m.legs]
-    form["home"] = {"X": list(m.home.X), "q": list(m.home.q)}
+    form["home"] = {"X": list(m.home.X)} | ({"q": list(m.home.q)} if m.home.q else {})
     if m.symbols:
         form["symbols"] = dict(m.symbols)
     return form

@@ -7,18 +7,23 @@ import warnings
 
 import numpy as np
 
+from pne_sym.model.assembly import all_closures
+from pne_sym.model.closure import CLOSED
 from pne_sym.model.entry import Entry
-from pne_sym.model.errors import SpecWarning
+from pne_sym.model.errors import SpecNote, SpecWarning
 from pne_sym.model.kinematics import TASK_SPACES, Array
 from pne_sym.model.loops import Loops, all_closed, legs_closed
 from pne_sym.model.manipulator import Home, Joint, Leg, Space, Vector3
+from pne_sym.model.mistaken import mistaken_unit
 from pne_sym.model.values import EXACT, number
 
 FIELDS = ("X", "q")
 TOLERANCE = 1e-6
 """Gap (m; axes: rad) up to which the given home counts as closed."""
-CLOSED = 1e-12
-"""Gap to which a home is polished, relative to the size where that exceeds 1 m."""
+DIGITS = 13
+"""Decimals to which displacements are found, the same on every machine."""
+LARGE = 50.0
+"""Positions of this size (m) are asked about where q is found."""
 REACH = 0.5
 """A rough guess may be off by this much in any displacement (m or rad)."""
 
@@ -27,7 +32,8 @@ def read_home(entry: Entry, space: Space, legs: tuple[Leg, ...], centre: Vector3
     """The home, with its loops closed to rounding.
 
     A home that closes to `TOLERANCE` is polished; a rough guess is solved for,
-    with a `SpecWarning` that tells how far it was off.
+    with a `SpecWarning` that tells how far it was off.  Without q, displacements are found
+    that close the loops, and told by a `SpecNote`.
 
     Raises:
         SpecError: wrong lengths, no rotation, or loops that do not close nearby.
@@ -35,11 +41,14 @@ def read_home(entry: Entry, space: Space, legs: tuple[Leg, ...], centre: Vector3
     table = entry.table(FIELDS)
     loops = Loops(space, legs, centre)
     x_entry = table.require("X", "the platform coordinates, then the extra ones")
-    q_entry = table.require("q", "the displacements of all joints, leg by leg")
     X = _read_x(x_entry, loops)
-    q = _read_q(q_entry, loops)
-    _check_extra(x_entry, X[loops.size :], q[loops.extra])
-    X, q = _closed(entry, loops, np.array(X), np.array(q))
+    q_entry = table.get("q")
+    if q_entry is None:
+        X, q = _found(entry, loops, X)
+    else:
+        q = _read_q(q_entry, loops)
+        _check_extra(x_entry, X[loops.size :], q[loops.extra])
+        X, q = _closed(entry, loops, np.array(X), q)
     return Home(tuple(X.tolist()), tuple(q.tolist()))
 
 
@@ -62,7 +71,7 @@ def _read_x(entry: Entry, loops: Loops) -> Array:
 
 
 def _read_q(entry: Entry, loops: Loops) -> Array:
-    """Displacements, flat or one list for each leg; revolute ones within (-pi, pi]."""
+    """Displacements, flat or one list for each leg."""
     joints = loops.joints
     items = entry.items()
     if items and isinstance(items[0].value, list):
@@ -72,7 +81,7 @@ def _read_q(entry: Entry, loops: Loops) -> Array:
             f"{len(joints)} numbers: one for each joint, leg by leg from the base",
             problem=f"{len(items)} numbers",
         )
-    return _principal(joints, [number(item) for item in items])
+    return np.array([number(item) for item in items])
 
 
 def _flat(entry: Entry, items: list[Entry], loops: Loops) -> list[Entry]:
@@ -100,8 +109,47 @@ def _check_extra(entry: Entry, in_x: Array, in_q: Array) -> None:
             )
 
 
+def _found(entry: Entry, loops: Loops, X: Array) -> tuple[Array, Array]:
+    """X, and q of the usual closure of every leg."""
+    found = all_closures(loops, X)
+    q = np.concatenate([leg[0] for leg in found])
+    if max(loops.gaps(X, q)) > TOLERANCE:
+        new_x, q = all_closed(loops, X, q)  # the legs restrict the platform: the pose gives way
+        moved = float(np.abs(new_x - X).max())
+        if max(loops.gaps(new_x, q)) > TOLERANCE or moved > REACH:
+            raise entry.fault(
+                "X, base_point and platform_point with which all legs can be closed",
+                problem=f"no displacements close the loops at X: {loops.widest(X, q)} at best"
+                f"{mistaken_unit(loops, X, None)}",
+            )
+        if moved > TOLERANCE:
+            warnings.warn(
+                f"{entry.source}: {entry.where}.X: the legs restrict the platform; closed by a "
+                f"change of at most {moved:.3g} (m or rad)",
+                SpecWarning,
+                stacklevel=2,
+            )
+        X = new_x
+    q = principal(loops.joints, np.round(q, DIGITS).tolist())
+    warnings.warn(_told(entry, loops, X, q, [len(leg) for leg in found]), SpecNote, stacklevel=2)
+    return X, q
+
+
+def _told(entry: Entry, loops: Loops, X: Array, q: Array, counts: list[int]) -> str:
+    """The displacements that were found, as the file could state them."""
+    rows = ", ".join(f"[{', '.join(f'{x:.6g}' for x in q[s] + 0.0)}]" for s in loops.slices())
+    size = max(abs(x) for leg in loops.legs for x in (*leg.base_point, *leg.platform_point))
+    size = max(size, float(np.abs(X[: loops.size]).max()))
+    doubt = f"; lengths are in m: is {size:g} in mm?" if size >= LARGE else ""
+    return (
+        f"{entry.source}: {entry.where}: q found from X: q = [{rows}], of "
+        f"{', '.join(map(str, counts))} closures the usual ones (pne-gen home lists all){doubt}"
+    )
+
+
 def _closed(entry: Entry, loops: Loops, X: Array, q: Array) -> tuple[Array, Array]:
-    """X and q with the loops closed."""
+    """X and q with the loops closed; revolute displacements within (-pi, pi]."""
+    given, q = q, principal(loops.joints, q.tolist())
     q[loops.extra] = X[loops.size :]
     gaps = loops.gaps(X, q)
     exact = CLOSED * max(1.0, float(np.abs(X).max()), float(np.abs(q).max()))
@@ -116,8 +164,8 @@ def _closed(entry: Entry, loops: Loops, X: Array, q: Array) -> tuple[Array, Arra
     if max(loops.gaps(new_x, new_q)) > TOLERANCE or moved > REACH:
         raise entry.fault(
             f"X and q with gaps of at most {TOLERANCE:g} (m or rad), "
-            f"or a guess within {REACH:g} (m or rad) of such",
-            problem=f"the loops do not close at X: {widest}",
+            f"or a guess within {REACH:g} (m or rad) of such, or no q: it is found then",
+            problem=f"the loops do not close at X: {widest}{mistaken_unit(loops, X, given)}",
         )
     if max(gaps) > TOLERANCE:
         warnings.warn(
@@ -126,10 +174,10 @@ def _closed(entry: Entry, loops: Loops, X: Array, q: Array) -> tuple[Array, Arra
             SpecWarning,
             stacklevel=2,
         )
-    return new_x, _principal(loops.joints, new_q.tolist())
+    return new_x, principal(loops.joints, new_q.tolist())
 
 
-def _principal(joints: list[Joint], q: list[float]) -> Array:
+def principal(joints: list[Joint], q: list[float]) -> Array:
     """Revolute displacements within (-pi, pi], except those that are coordinates."""
     return np.array(
         [

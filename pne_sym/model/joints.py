@@ -14,6 +14,7 @@ from pne_sym.model.manipulator import ZERO3, Joint, PlatformJoint, Vector3
 from pne_sym.model.platform_kinds import PlatformJointKind
 from pne_sym.model.read_effects import FIELDS as EFFECTS
 from pne_sym.model.read_effects import read_effects
+from pne_sym.model.spherical import USUAL
 from pne_sym.model.values import ROUNDING, axis, flags, number, offset, rotation
 
 FIELDS = ("kind", "axis", "axes", "offset", "pitch", "actuated", "extra", "link", *EFFECTS)
@@ -135,7 +136,12 @@ def _axes(table: Table, kind: WrittenJoint, *, plane: bool) -> tuple[Vector3, ..
 
 
 def _perpendicular(table: Table, count: int) -> tuple[Vector3, ...]:
-    """Axes of a universal or spherical joint, each perpendicular to the next."""
+    """Axes of a universal or spherical joint, each perpendicular to the next.
+
+    Of a spherical one they may be left out: `legs` then chooses by what follows.
+    """
+    if count == len(USUAL) and table.get("axes") is None:
+        return USUAL
     entry = table.require("axes", f"a list of {count} unit vectors, from the base side")
     items = entry.items()
     if len(items) != count:

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from pne_sym.model.entry import Entry, Table, nearest
 from pne_sym.model.errors import SpecError, SpecWarning
+from pne_sym.model.joints import FIELDS as JOINT_FIELDS
 from pne_sym.model.joints import check_count, read_joint, read_platform_joint
 from pne_sym.model.manipulator import (
     IDENTITY3,
@@ -19,6 +20,7 @@ from pne_sym.model.manipulator import (
     Space,
 )
 from pne_sym.model.names import read_type_name
+from pne_sym.model.spherical import USUAL, with_axes
 from pne_sym.model.values import rotation, vector
 
 FIELDS = ("type", "base_point", "base_frame", "joints", "platform_joint", "platform_point")
@@ -68,11 +70,12 @@ def _read_leg(entry: Entry, types: _LegTypes, used: set[str], space: Space) -> L
     plane = is_plane(space)
     shared = _shared(table, types, used)
     frame = table.get("base_frame")
+    end = _platform_joint(table, shared, plane=plane)
     return Leg(
         base_point=vector(table.require("base_point", "its position (m)"), plane=plane),
         base_frame=rotation(frame, plane=plane) if frame else IDENTITY3,
-        joints=_joints(table, shared, plane=plane),
-        platform_joint=_platform_joint(table, shared, plane=plane),
+        joints=_joints(table, shared, end, plane=plane),
+        platform_joint=end,
         platform_point=_platform_point(table, space),
     )
 
@@ -90,7 +93,9 @@ def _shared(table: Table, types: _LegTypes, used: set[str]) -> Table | None:
     return types[name]
 
 
-def _joints(table: Table, shared: Table | None, *, plane: bool) -> tuple[Joint, ...]:
+def _joints(
+    table: Table, shared: Table | None, end: PlatformJoint, *, plane: bool
+) -> tuple[Joint, ...]:
     own = table.get("joints")
     if own is not None and not isinstance(own.value, Mapping):
         source, entries = own, own.items()
@@ -103,7 +108,11 @@ def _joints(table: Table, shared: Table | None, *, plane: bool) -> tuple[Joint, 
         if own is not None:
             entries = _overridden(entries, own)
     check_count(source, len(entries))
-    joints = tuple(joint for entry in entries for joint in read_joint(entry, plane=plane))
+    parts = [read_joint(entry, plane=plane) for entry in entries]
+    for k in reversed(range(len(parts))):
+        if len(parts[k]) == len(USUAL) and entries[k].table(JOINT_FIELDS).get("axes") is None:
+            parts[k] = with_axes(parts[k], next(iter(parts[k + 1 : k + 2]), [None])[0], end)
+    joints = tuple(joint for part in parts for joint in part)
     check_count(source, len(joints))
     return joints
 

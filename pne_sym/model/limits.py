@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from pne_sym.model.closure import CLOSED
 from pne_sym.model.entry import Entry
-from pne_sym.model.home import CLOSED
 from pne_sym.model.manipulator import Home, Joint, Leg
 
 

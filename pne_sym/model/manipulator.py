@@ -177,11 +177,12 @@ class Home:
 
     Attributes:
         X: platform coordinates followed by the extra coordinates.
-        q: displacements of all chain joints, leg by leg from the base.
+        q: displacements of all chain joints, leg by leg from the base; empty, in what is
+            built in Python, to have them found from X.
     """
 
     X: tuple[float, ...]
-    q: tuple[float, ...]
+    q: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)

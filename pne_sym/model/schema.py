@@ -179,7 +179,8 @@ def _joint() -> Schema:
     others = [kind for kind in WrittenJoint if not kind.crossed]
     plain = [kind for kind in others if not (kind.pitched or kind.implied)]
     rules: list[Schema] = [
-        _when(crossed, {"required": ["axes"], "not": {"required": ["axis"]}}),
+        _when(crossed, {"not": {"required": ["axis"]}}),
+        _when([kind for kind in crossed if len(kind.parts) < 3], {"required": ["axes"]}),
         _when([kind for kind in others if kind.pitched], {"required": ["axis", "pitch"]}),
         _when(plain, {"required": ["axis"]}),
         _when(others, {"not": {"required": ["axes"]}}),
@@ -239,7 +240,7 @@ def _home() -> Schema:
         "X": flat,
         "q": {"anyOf": [flat, {"type": "array", "items": flat}]},
     }
-    return _table("home", home.FIELDS, fields, home.FIELDS)
+    return _table("home", home.FIELDS, fields, ("X",))
 
 
 def _axis() -> Schema:

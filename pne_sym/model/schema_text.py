@@ -88,7 +88,7 @@ MEANING: dict[str, dict[str, str]] = {
     },
     "home": {
         "X": "Platform coordinates, then those of the joints marked extra.",
-        "q": "Displacements of all joints: a flat list, or one list for each leg.",
+        "q": "Displacements of all joints, flat or a list for each leg. Default: found from X.",
     },
     "rotation": {
         "rpy": "Roll, pitch, yaw about the fixed axes x, y, z, rad.",

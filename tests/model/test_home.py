@@ -11,11 +11,13 @@ import numpy as np
 import pytest
 
 from pne_sym import manipulators
+from pne_sym.model.assembly import all_closures, distance
 from pne_sym.model.closure import leg_gap
-from pne_sym.model.errors import SpecError, SpecWarning
+from pne_sym.model.errors import SpecError, SpecNote, SpecWarning
 from pne_sym.model.kinematics import pose_at, rotation_about
 from pne_sym.model.loops import Loops
 from pne_sym.model.manipulator import (
+    Home,
     JointKind,
     Leg,
     Manipulator,
@@ -23,7 +25,7 @@ from pne_sym.model.manipulator import (
     PlatformJointKind,
     Space,
 )
-from pne_sym.model.reader import from_mapping, to_full_form
+from pne_sym.model.reader import checked, from_mapping, to_full_form
 from tests.model.examples import planar, spoilt
 
 NAMES = manipulators.names()
@@ -89,6 +91,125 @@ def test_a_home_out_of_reach_is_refused() -> None:
     form["home"]["X"][2] = 3.0
     with pytest.raises(SpecError, match=r"home: the loops do not close at X: legs\[\d\] has a gap"):
         from_mapping(form, "far.json")
+
+
+# What these have: slides out, elbows outwards.
+USUAL = ("stewart_sps", "hexapod_6ucu", "hexapod_6uhs", "planar_3rrr", "tripod_3rps", "tricept")
+MILLI = 1000.0
+
+
+def read_found(form: Any) -> tuple[Manipulator, str]:
+    form["home"].pop("q")
+    with pytest.warns(SpecNote) as caught:
+        manipulator = from_mapping(form, "found.json")
+    return manipulator, str(caught[0].message)
+
+
+@pytest.mark.parametrize("name", USUAL)
+def test_a_home_without_q_is_found(name: str) -> None:
+    wanted = manipulators.load(name)
+    found, message = read_found(form_of(name))
+    assert gap(found) < 1e-12
+    np.testing.assert_allclose(found.home.q, wanted.home.q, atol=1e-9)
+    assert message.startswith("found.json: home: q found from X: q = [[")
+    assert "closures the usual ones (pne-gen home lists all)" in message
+
+
+def test_a_home_without_q_in_python() -> None:
+    m = manipulators.load("planar_3rpr")
+    with pytest.warns(SpecNote, match="q found from X"):
+        found = checked(replace(m, home=Home(m.home.X)))
+    np.testing.assert_allclose(found.home.q, m.home.q, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("name", "count"), [("planar_3rrr", 2), ("stewart", 4), ("hexapod_6rus", 4), ("delta", 4)]
+)
+def test_all_closures_of_a_leg(name: str, count: int) -> None:
+    """Elbows, crosses and slides have two closures each, which multiply."""
+    m = manipulators.load(name)
+    loops = Loops(m.space, m.legs, m.fixed_centre)
+    X = np.array(m.home.X)
+    pose = pose_at(m.space, m.home.X, m.fixed_centre)
+    for leg, s, found in zip(m.legs, loops.slices(), all_closures(loops, X), strict=True):
+        assert len(found) == count
+        assert min(distance(leg, np.array(m.home.q[s]), q) for q in found) < 1e-9
+        for k, q in enumerate(found):
+            assert np.abs(leg_gap(leg, q, pose)[0]).max() < 1e-12
+            assert all(distance(leg, q, other) > 0.01 for other in found[:k])
+
+
+def test_limits_choose_the_closure() -> None:
+    form = form_of("planar_3rrr")
+    usual = manipulators.load("planar_3rrr").home.q[1]
+    form["legs"][0]["joints"][1]["limits"] = {"displacement": [-0.1 * usual, -2.0 * usual]}
+    found, _ = read_found(form)
+    assert found.home.q[1] == pytest.approx(-usual)
+    assert found.home.q[3] == pytest.approx(usual)
+
+
+def test_a_home_without_q_moves_a_constrained_platform() -> None:
+    form = form_of("tripod_3rps")
+    form["home"]["X"][0] += 0.01
+    form["home"].pop("q")
+    with pytest.warns() as caught:
+        found = from_mapping(form, "found.json")
+    assert gap(found) < 1e-12
+    assert {w.category for w in caught} == {SpecWarning, SpecNote}
+    assert "home.X: the legs restrict the platform; closed by a change of" in str(caught[0].message)
+
+
+def in_other_units(name: str, what: str) -> Any:
+    """A specification with some numbers in mm or degrees."""
+    form = form_of(name)
+    joints = [joint for leg in form["legs"] for joint in leg["joints"]]
+    pairs = list(zip(joints, form["home"]["q"], strict=True))
+    if what == "angles":
+        form["home"]["q"] = [x if j["kind"] == "P" else math.degrees(x) for j, x in pairs]
+    if what == "ways":
+        form["home"]["q"] = [x * MILLI if j["kind"] == "P" else x for j, x in pairs]
+    for leg in form["legs"] if what in {"points", "base_point"} else ():
+        leg["base_point"] = [MILLI * x for x in leg["base_point"]]
+        if what == "points":
+            leg["platform_point"] = [MILLI * x for x in leg["platform_point"]]
+    if what == "position":
+        form["home"]["X"][:2] = [MILLI * x for x in form["home"]["X"][:2]]
+    return form
+
+
+@pytest.mark.parametrize(
+    ("name", "what", "told"),
+    [
+        ("stewart", "angles", "angles in home.q in degrees"),
+        ("stewart", "ways", "ways in home.q in mm"),
+        ("stewart", "points", "base_point, platform_point in mm"),
+        ("planar_3rrr", "angles", "angles in home.q in degrees"),
+        ("planar_3rrr", "base_point", "base_point in mm"),
+        ("planar_3rrr", "position", "the position in home.X in mm"),
+    ],
+)
+def test_a_wrong_unit_is_named(name: str, what: str, told: str) -> None:
+    with pytest.raises(SpecError) as refused:
+        from_mapping(in_other_units(name, what), "mm.json")
+    assert f"; with {told} they would close, but units are m and rad" in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("what", "told"),
+    [("base_point", "base_point in mm"), ("position", "the position in home.X in mm")],
+)
+def test_a_wrong_unit_is_named_without_q(what: str, told: str) -> None:
+    form = in_other_units("planar_3rrr", what)
+    form["home"].pop("q")
+    with pytest.raises(SpecError, match="home: no displacements close the loops at X") as refused:
+        from_mapping(form, "mm.json")
+    assert f"; with {told} they would close, but units are m and rad" in str(refused.value)
+
+
+def test_huge_lengths_are_asked_about() -> None:
+    form = in_other_units("stewart", "points")
+    form["home"]["X"][2] *= MILLI
+    assert "; lengths are in m: is 750 in mm?" in read_found(form)[1]
 
 
 def axis_turned(axis: Any, towards: Any, angle: float) -> Any:

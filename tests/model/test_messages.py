@@ -39,7 +39,7 @@ SPATIAL: list[tuple[str, Any, str]] = [
     ("legs.0.platform_point", ABSENT, "legs[0]: missing field 'platform_point'"),
     ("legs.0.joints.0.axis", ABSENT, "legs[0].joints[0]: missing field 'axis'"),
     ("home", ABSENT, "missing field 'home'"),
-    ("home.q", ABSENT, "home: missing field 'q'"),
+    ("home.X", ABSENT, "home: missing field 'X'"),
     ("space", "spacial", "space: value 'spacial'; expected one of point, planar, spatial"),
     ("space", "spacial", "(did you mean spatial"),
     ("space", ["spatial"], "space: value ['spatial']; expected one of"),

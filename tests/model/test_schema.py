@@ -109,7 +109,7 @@ TYPICAL: list[tuple[str, Any]] = [
     ("legs.0.platform_joint", "T"),
     ("legs.0.platform_joint.axis", "x"),
     ("home", ABSENT),
-    ("home.q", ABSENT),
+    ("home.X", ABSENT),
     ("home.X", "here"),
     ("home.velocity", [0]),
 ]
