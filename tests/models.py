@@ -25,6 +25,7 @@ from pne_sym import manipulators
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.manifest import ManifestBackend
 from pne_sym.backends.numpy_backend import NumpyBackend
+from pne_sym.derivation import Derivation
 from pne_sym.mechanics.derive import derive
 from pne_sym.model.full_form import to_full_form
 from pne_sym.model.manipulator import Manipulator
@@ -54,6 +55,12 @@ _STEP = re.compile(r"\.?([a-z_]+)|\[(\d+)\]")
 def catalogue(name: str) -> Manipulator:
     """A manipulator of the catalogue."""
     return manipulators.load(name)
+
+
+@cache
+def derivation(name: str) -> Derivation:
+    """The derivation of a manipulator of the catalogue."""
+    return derive(catalogue(name))
 
 
 @cache

@@ -25,6 +25,7 @@ from pne_sym.derivation.equation import (
     Role,
     names_in,
 )
+from pne_sym.derivation.paper import check_reference
 from pne_sym.derivation.parameters import ParameterTable
 from pne_sym.vector import LinearForm, Tensor, TensorSymbol, Vector, VectorSymbol
 from pne_sym.vector.dimensions import DimensionError, dimension_of_unit
@@ -106,7 +107,9 @@ class Book:
 
         Raises:
             DimensionError: dimensions in right-hand side, forms or conditions disagree.
+            ValueError: the paper has nothing of this law at the reference.
         """
+        check_reference(reference, law)
         symbol: Any
         if isinstance(rhs, Vector):
             symbol = VectorSymbol(name)

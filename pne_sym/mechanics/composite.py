@@ -184,6 +184,7 @@ class CompositeWriter:
             force,
             rf"\mathbf P_{{{k}}}",
             f"force that accelerates joint {k}, per unit",
+            Law.NEWTON,
             frame,
         )
         if not g.group[k]:
@@ -193,6 +194,7 @@ class CompositeWriter:
             moment,
             rf"\mathbf L_{{{k}}}",
             f"moment about joint {g.group[k]} that accelerates joint {k}, per unit",
+            Law.EULER,
             frame,
         )
 
@@ -206,13 +208,14 @@ class CompositeWriter:
             total,
             rf"\mathbf L_{{{k},{group}}}",
             f"moment about joint {group} that accelerates joint {k}, per unit",
+            Law.EULER,
             self.g.frame("axes", group),
         )
 
-    def _named(self, stem: str, value: Any, latex: str, title: str, frame: str) -> Any:
+    def _named(self, stem: str, value: Any, latex: str, title: str, law: Law, frame: str) -> Any:
         if value == ZeroVector or isinstance(value, VectorSymbol):
             return value
-        return self.book.define(self.g.name(stem), value, latex, title, Law.NEWTON, body=frame)
+        return self.book.define(self.g.name(stem), value, latex, title, law, body=frame)
 
     def _along(self, j: int, force: Any, moment: Any) -> Any:
         return Dot(self.g.spin(j), moment) + Dot(self.g.slide(j), force)

@@ -39,7 +39,7 @@ def write_lengths(book: Book, legs: Sequence[LegGeometry]) -> None:
         sp.sqrt(sp.Add(*mean(squared))),
         r"\ell_b",
         "rms distance of the platform points from their centroid",
-        Law.DEFINITION,
+        Law.LUMPING,
         parameter=True,
     )
     legs_size = book.define(
@@ -47,7 +47,7 @@ def write_lengths(book: Book, legs: Sequence[LegGeometry]) -> None:
         sp.sqrt(sp.Add(*mean(lambda g: g.size**2))),
         r"\ell_l",
         "rms size of the legs, taken where the platform points coincide",
-        Law.DEFINITION,
+        Law.LUMPING,
         parameter=True,
     )
     for row, value in enumerate((spread, legs_size)):

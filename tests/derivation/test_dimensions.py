@@ -11,10 +11,9 @@ import sympy as sp
 from pne_sym import manipulators
 from pne_sym.derivation import Book, Condition, Law, ParameterField, Quantity, Role, Trouble
 from pne_sym.derivation.dimensions import Dimensions
-from pne_sym.mechanics.derive import derive
 from pne_sym.vector import Cross, Dot, VectorSymbol, ZeroVector
 from pne_sym.vector.dimensions import DimensionError, dimension, dimension_of_unit
-from tests.models import catalogue
+from tests.models import catalogue, derivation
 
 r, v, omega = (VectorSymbol(name) for name in ("r", "v", "omega"))
 mass = sp.Symbol("mass", real=True)
@@ -114,17 +113,17 @@ OF_JOINTS = {Role.DISPLACEMENT: "", Role.RATE: "/s", Role.JOINT_ACCELERATION: "/
 def test_of_the_catalogue(name: str) -> None:
     """What is computed from the right-hand sides is what the quantities are known to be."""
     manipulator = catalogue(name)
-    derivation = derive(manipulator)
-    members = {info.name: info.indices[0] for info in derivation.leg_types}
-    units = Dimensions(derivation.notation, derivation.parameters)
-    for quantity in derivation.notation.values():
+    of = derivation(name)
+    members = {info.name: info.indices[0] for info in of.leg_types}
+    units = Dimensions(of.notation, of.parameters)
+    for quantity in of.notation.values():
         if quantity.role in ROLES:
             assert quantity.unit == ROLES[quantity.role], quantity
         if quantity.role in OF_JOINTS:
             joint = manipulator.legs[members[quantity.leg_type]].joints[quantity.joint - 1]
             assert quantity.unit == joint.kind.unit + OF_JOINTS[quantity.role], quantity
-    for equation in derivation.equations():
+    for equation in of.equations():
         found = dimension(equation.rhs, units)
         if found is not None and not isinstance(equation.rhs, sp.Float):
-            shown = derivation.notation[equation.name].unit
+            shown = of.notation[equation.name].unit
             assert dimension_of_unit(shown) == found, equation.name
