@@ -59,6 +59,10 @@ test-all: $(VENV)/test.stamp ## Run the tests, every case
 targets: $(VENV)/targets.stamp ## Test all extension modules, array-API modules (NumPy, JAX, PyTorch, Dask) and Octave packages
 	$(BIN)/python -m pytest -n 0 -o norecursedirs=".*" tests/targets
 
+.PHONY: printed
+printed: $(VENV)/test.stamp ## Compute all models from the text of their reports, with other numbers too
+	$(BIN)/python -m pytest $(PYTEST_ARGS) -m "" tests/printed
+
 .PHONY: bench
 bench: $(VENV)/core.stamp ## Measure the generated code and the generator
 	$(BIN)/python bench/c_speed.py

@@ -20,12 +20,15 @@ from pne_sym.derivation.equation import (
     Trouble,
     names_in,
 )
+from pne_sym.derivation.frames import BodyAxes, BodyFrame, rotations_by_place
 from pne_sym.derivation.parameters import AxisRelation, ParameterField, ParameterTable, Rule
 
 __all__ = [
     "PLATFORM",
     "Actuation",
     "AxisRelation",
+    "BodyAxes",
+    "BodyFrame",
     "Book",
     "Chapter",
     "Condition",
@@ -45,4 +48,5 @@ __all__ = [
     "Rule",
     "Trouble",
     "names_in",
+    "rotations_by_place",
 ]

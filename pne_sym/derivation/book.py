@@ -25,6 +25,7 @@ from pne_sym.derivation.equation import (
     Role,
     names_in,
 )
+from pne_sym.derivation.frames import BodyFrame
 from pne_sym.derivation.paper import check_reference
 from pne_sym.derivation.parameters import ParameterTable
 from pne_sym.vector import LinearForm, Tensor, TensorSymbol, Vector, VectorSymbol
@@ -39,6 +40,8 @@ class Book:
         self.bases: list[ReciprocalBasis] = []
         self.givens: list[Given] = []
         self.frames: list[Frame] = []
+        self.body_frames: list[BodyFrame] = []
+        self.pose: list[Given] = []
         self.parameters = ParameterTable()
         self.outputs: list[Output] = []
         self.leg_types: list[LegTypeInfo] = []
@@ -197,6 +200,22 @@ class Book:
             shown[name] = form if usable else None
         return shown
 
+    def fix_axes(self, axes: BodyFrame, quantity: Quantity | None = None, rhs: Any = None) -> Any:
+        """Introduce the axes of a body; returns the tensor that turns them into base axes.
+
+        Its equation is for readers: programs take components from the frames.
+        """
+        symbol, equation = None, None
+        if quantity is not None:
+            self.note_quantity(quantity)
+            self.notation[quantity.name] = replace(quantity, leg_type=axes.leg_type)
+            symbol = TensorSymbol(quantity.name)
+        if quantity is not None and rhs is not None:
+            id_ = f"{axes.leg_type}-F{quantity.joint}" if axes.leg_type else "F1"
+            equation = Equation(id_, quantity.meaning, symbol, rhs, Law.GEOMETRY)
+        self.body_frames.append(replace(axes, symbol=symbol, equation=equation))
+        return symbol
+
     def mark(self) -> tuple[int, int, set[str]]:
         """A point in the open chapter to return to."""
         return len(self._chapters[-1][4]), len(self.givens), set(self.notation)
@@ -258,6 +277,8 @@ class Book:
             tuple(self.bases),
             tuple(self.givens),
             tuple(self.frames),
+            tuple(self.body_frames),
+            tuple(self.pose),
             self.parameters,
             tuple(self.outputs),
             tuple(self.leg_types),

@@ -15,6 +15,7 @@ from typing import Any
 import sympy as sp
 
 from pne_sym.derivation.actuation import Actuation
+from pne_sym.derivation.frames import BodyFrame
 from pne_sym.derivation.parameters import ParameterTable
 from pne_sym.vector import (
     LegSum,
@@ -404,6 +405,8 @@ class Derivation:
         bases: reciprocal bases.
         givens: components of what is given.
         frames: frames, parents first.
+        body_frames: those of them that are the axes of a body.
+        pose: components of what describes the platform's rotation; no program needs it.
         parameters: the live parameters.
         outputs: what the generated code returns.
         leg_types: the leg types, in order of first appearance.
@@ -417,6 +420,8 @@ class Derivation:
     bases: tuple[ReciprocalBasis, ...] = ()
     givens: tuple[Given, ...] = ()
     frames: tuple[Frame, ...] = ()
+    body_frames: tuple[BodyFrame, ...] = ()
+    pose: tuple[Given, ...] = ()
     parameters: ParameterTable = field(default_factory=ParameterTable)
     outputs: tuple[Output, ...] = ()
     leg_types: tuple[LegTypeInfo, ...] = ()
@@ -427,6 +432,12 @@ class Derivation:
         """All equations in order."""
         for chapter in self.chapters:
             yield from chapter.equations
+
+    def rotations(self) -> Iterator[Equation]:
+        """How axes of bodies are turned: for readers, programs take components from the frames."""
+        for body in self.body_frames:
+            if body.equation is not None:
+                yield body.equation
 
     def leg_state(self) -> Iterator[Quantity]:
         """Scalars of a leg that are given: extra coordinates, what is found by iteration."""
@@ -446,7 +457,7 @@ class Derivation:
         Raises:
             KeyError: nothing defines it (it is given).
         """
-        for equation in self.equations():
+        for equation in (*self.equations(), *self.rotations()):
             if equation.name == name:
                 return equation
         raise KeyError(name)

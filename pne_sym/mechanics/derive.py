@@ -17,6 +17,7 @@ from pne_sym.derivation import (
     Quantity,
     Role,
 )
+from pne_sym.derivation.frames import BodyFrame, turned_about
 from pne_sym.mechanics.actuation import actuation
 from pne_sym.mechanics.branches import branch_signs
 from pne_sym.mechanics.completion import completion_of
@@ -127,6 +128,7 @@ def _derive_leg(
     g = replace(g, composite=composite, completion=completion, pure_moment=pure)
     book.chapter(f"{prefix}-K", f"Inverse kinematics of a {title} leg", _INVERSE, prefix)
     inverse = _inverse_kinematics(book, manipulator, space, platform, g)
+    _tell_rotations(book, g, inverse)
     book.leg_types.append(_info(leg_type, inverse, len(g.pairs)))
     kinematics = MotionWriter(book, g, platform, space, inverse)
     motion = kinematics.write(prefix)
@@ -146,6 +148,28 @@ def _derive_leg(
         _closure_outputs(book, leg, kinematics.tip_frame(), space)
         _orientation(book, manipulator, leg, space)
     return leg, kinematics
+
+
+def _tell_rotations(book: Book, g: LegGeometry, inverse: InverseKinematics) -> None:
+    """For readers: how the axes of the links are turned by the angles found."""
+    before, turned = "", None
+    for j in range(g.count + 1):
+        if j and not g.turns(j):
+            continue
+        members = [k for k in range(j, g.count + 1) if g.group[k] == j]
+        body = f"link{'s' * (len(members) > 1)} {', '.join(map(str, members))}"
+        what = f"rotation of link {j}: turns components in its axes into base axes"
+        name, latex = g.name(f"rotation_{j}"), rf"\mathbf T_{{{j}}}"
+        quantity = Quantity(name, latex, what, body="base", joint=j)
+        rhs = turned_about(g.e[j], g.turn(j) * inverse.q[j]) @ turned if j else None
+        frame = BodyFrame(
+            g.frame("spec", j),
+            body,
+            leg_type=g.leg_type.name,
+            axis=g.e[j] if j else None,
+            before=before,
+        )
+        before, turned = frame.frame, book.fix_axes(frame, quantity, rhs)
 
 
 def _orientation(book: Book, manipulator: Manipulator, leg: Leg, space: TaskSpace) -> None:

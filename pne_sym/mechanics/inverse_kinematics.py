@@ -254,11 +254,17 @@ class _Solver:
         g = self.g
         terms = []
         for i in range(j + 1, g.count + 2):
-            if g.offset[i] == ZeroVector:
+            if g.offset[i] == ZeroVector or self._lies_along(i, j):
                 continue
-            own = next((m for m in range(i - 1, j, -1) if g.turns(m) and g.parallel(m, k)), k)
+            near = (*range(i - 1, j, -1), *([i] if i <= g.count else []))
+            own = next((m for m in near if g.turns(m) and g.parallel(m, k)), k)
             terms.append(g.parallel(own, k) * Dot(g.e[own], g.offset[i]))
         return sp.Add(*terms, *(y * Dot(g.e[k], axis) for y, axis in self._extra_slides(j)))
+
+    def _lies_along(self, i: int, j: int) -> bool:
+        """Whether offset i lies along the axis of a helical joint, across joint j's direction."""
+        opening = self.g.group[i - 1]
+        return opening > j and self.g.acts_as_slide(opening)
 
     def _extra_slides(self, j: int) -> list[tuple[Any, Vector]]:
         """Displacement and axis of the extra joints beyond joint j that slide."""
@@ -286,7 +292,7 @@ class _Solver:
                 return None
             u = g.e[j] if g.perpendicular(j, p) else g.e[j] - Dot(g.e[j], g.e[p]) * g.e[p]
         constant = sp.Add(
-            *(Dot(u, g.offset[i]) for i in range(j + 1, g.count + 2)),
+            *(Dot(u, g.offset[i]) for i in range(j + 1, g.count + 2) if not self._lies_along(i, j)),
             *(y * Dot(u, axis) for y, axis in self._extra_slides(j)),
         )
         return "linear", u, constant

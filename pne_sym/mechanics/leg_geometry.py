@@ -19,7 +19,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from pne_sym.derivation import Book, Frame, ParameterField, Rule
+from pne_sym.derivation import Book, Frame, ParameterField, Quantity, Rule
 from pne_sym.mechanics.axis_relations import axis_relations
 from pne_sym.mechanics.structure import TOLERANCE, LegType, is_coordinate
 from pne_sym.mechanics.terms import Writer, filled, glossary
@@ -328,7 +328,11 @@ class _Builder:
                 rule = Rule.UNIT
                 self.spec[j] = self.field("joint#_axis", j, j - 1, zeros=zeros, rule=rule)
             if joint.kind.pitched:
-                (g.pitch[j],) = self.field("joint#_pitch", j, j - 1)
+                (pitch,) = self.field("joint#_pitch", j, j - 1)
+                what = f"pitch of joint {j}: advance per angle"
+                latex = rf"\kappa_{{{j}}}"
+                self.book.note_quantity(Quantity(pitch.name, latex, what, "m/rad", parameter=True))
+                g.pitch[j] = pitch
             group = j if g.turns(j) else group
             g.group[j] = group
         g.axes_at.extend(self._axes_with(extra) for extra in self._extra_draws())

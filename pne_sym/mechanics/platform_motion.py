@@ -8,11 +8,23 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from pne_sym.derivation import PLATFORM, Book, Frame, Law, ParameterField, Quantity, Role, Rule
+from pne_sym.derivation import (
+    PLATFORM,
+    Book,
+    Frame,
+    Given,
+    Law,
+    ParameterField,
+    Quantity,
+    Role,
+    Rule,
+)
+from pne_sym.derivation.frames import BodyFrame, of_quaternion, turned_about
 from pne_sym.model.kinematics import TaskSpace
 from pne_sym.model.manipulator import Body, Manipulator
 from pne_sym.vector import (
     Compose,
+    Dot,
     Skew,
     TensorSymbol,
     Vector,
@@ -58,6 +70,7 @@ def introduce_platform(book: Book, manipulator: Manipulator, space: TaskSpace) -
     rotation = _rotation(space)
     book.frames.append(Frame(PLATFORM, "base", rotation))
     vectors = _motion(book, manipulator, space)
+    _tell_rotation(book, space)
     spin: Any = ZeroTensor
     tensor: Any = ZeroTensor
     book.chapter("P", "Platform motion", _TEXT)
@@ -113,6 +126,42 @@ def _rotation(space: TaskSpace) -> tuple[Any, ...]:
         c, s = names[0][0], names[1][0]
         return (c, -s, 0, s, c, 0, 0, 0, 1)
     return tuple(entry for row in names for entry in row)
+
+
+def _tell_rotation(book: Book, space: TaskSpace) -> None:
+    """For readers: how the axes of the platform are turned by its pose."""
+    book.fix_axes(BodyFrame("base", "base"))
+    platform = BodyFrame(PLATFORM, "platform")
+    if not space.rotates:
+        book.fix_axes(platform)
+        return
+    if space.planar:
+        phi = _of_pose(book, "phi", r"\phi", "angle of the platform", "rad", 1)
+        z = _of_pose(book, "z_plane", r"\hat{\mathbf z}", "normal of the plane", "-", 0)
+        rotation = turned_about(z, phi)
+    else:
+        vector = _of_pose(
+            book, "eps", r"\boldsymbol\epsilon", "vector part of the quaternion", "-", 3
+        )
+        scalar = _of_pose(book, "eps_w", r"\epsilon_w", "scalar part of the quaternion", "-", 1)
+        rotation = of_quaternion(vector, scalar, scalar**2 + Dot(vector, vector))
+    what = "rotation of the platform: turns components in its axes into base axes"
+    quantity = Quantity("T_p", r"\mathbf T_p", what, body="base")
+    book.fix_axes(platform, quantity, rotation)
+
+
+def _of_pose(book: Book, name: str, latex: str, meaning: str, unit: str, size: int) -> Any:
+    """A scalar or a vector of the pose; of size 0 the normal of the plane."""
+    book.note_quantity(Quantity(name, latex, meaning, unit))
+    if size == 1:
+        symbol: Any = sp.Symbol(name, real=True)
+        components: tuple[Any, ...] = (symbol,)
+    else:
+        symbol = VectorSymbol(name)
+        along_z = (sp.S.Zero, sp.S.Zero, sp.S.One)
+        components = tuple(sp.Symbol(f"{name}_{a}", real=True) for a in "xyz") if size else along_z
+    book.pose.append(Given(symbol, "base", components))
+    return symbol
 
 
 def _motion(book: Book, manipulator: Manipulator, space: TaskSpace) -> dict[str, Vector]:

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.report.names import printer_for
-from pne_sym.derivation import Derivation, Equation, Quantity, names_in
+from pne_sym.derivation import Derivation, Equation, Quantity, names_in, rotations_by_place
 from pne_sym.review.plain import plain
 
 
@@ -70,7 +70,7 @@ def find_equation(derivation: Derivation, wanted: str) -> Equation:
     Raises:
         UnknownEquationError: there is none; the message has the nearest ids and names.
     """
-    equations = tuple(derivation.equations())
+    equations = (*derivation.equations(), *derivation.rotations())
     for equation in equations:
         if wanted in (equation.id, equation.name):
             return equation
@@ -103,9 +103,15 @@ def explain(bundle: Bundle, wanted: str, *, transitively: bool = False) -> Expla
     derivation = bundle.derivation
     equation = find_equation(derivation, wanted)
     printer = printer_for(derivation)
-    chapter = next(c for c in derivation.chapters if equation in c.equations)
+    rotations = rotations_by_place(derivation)
+    chapter = next(
+        c
+        for c in derivation.chapters
+        if equation in c.equations
+        or any(equation in e for (i, _), e in rotations.items() if i == c.id)
+    )
     used = printer if chapter.leg_type else printer.with_index()
-    uses = {e.name: names_in(e.rhs) for e in derivation.equations()}
+    uses = {e.name: names_in(e.rhs) for e in (*derivation.equations(), *derivation.rotations())}
     return Explanation(
         equation,
         derivation.notation[equation.name],
@@ -142,7 +148,7 @@ def _inverted(graph: dict[str, set[str]]) -> dict[str, set[str]]:
 
 def _related(derivation: Derivation, names: set[str]) -> Iterable[Related]:
     """The quantities of these names: given ones first, then in order of derivation."""
-    equations = {e.name: e for e in derivation.equations()}
+    equations = {e.name: e for e in (*derivation.equations(), *derivation.rotations())}
     for name in sorted(names - equations.keys()):
         quantity = derivation.notation.get(name)
         if name in derivation.parameters.entries:

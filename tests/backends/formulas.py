@@ -1,4 +1,4 @@
-"""Reads printed formulas back: LaTeX to numbers, by the rules that a reader follows.
+"""Reads printed formulas: LaTeX to numbers, by the rules that a reader follows.
 
 Shares nothing with the printer but the notation of symbols.  Vectors are columns,
 their transposes rows, so that a product written side by side is a matrix product.
@@ -7,7 +7,7 @@ their transposes rows, so that a product written side by side is a matrix produc
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -16,11 +16,15 @@ from pne_sym.backends.glyphs import Glyph
 
 _TOKENS = re.compile(
     r"(?P<space>\s+|\\,)|(?P<open>\\left\(|\()|(?P<close>\\right\)|\))|(?P<number>\d+(\.\d+)?)"
+    r"|(?P<sum>\\sum_(\{[^}]*\}|.))|(?P<dual>\\left\[\\mathcal V\^\{-1\}\\right\]_\{[^}]*\})"
     r"|(?P<mark>\\times|\\cdot(?![a-z])|\\lVert|\\rVert|\\frac|\\sqrt|\\widetilde|\\mathrm\{ax\}"
-    r"|\\mathrm\{atan2\}|\\sin|\\cos|\\mathbf E(?![a-z])|[-+{}^,])"
+    r"|\\mathrm\{tr\}|\\mathrm\{atan2\}|\\sin|\\cos|\\mathbf E(?![a-z])|\\mathbf 0|[-+{}^,])"
 )
 _TRANSPOSED = r"{\mathsf T}"
 _FUNCTIONS = {r"\sin": np.sin, r"\cos": np.cos, r"\mathrm{atan2}": np.arctan2}
+_ENDS = ("", "+", "-", ")", r"\right)", r"\times", r"\cdot", "}", ",", r"\rVert")
+Value = Callable[[Any], Any]
+"""A formula: from what its symbols stand for to its value."""
 
 
 def tilde(a: Any) -> Any:
@@ -34,30 +38,54 @@ def ax(t: Any) -> Any:
     return np.array([[t[2, 1] - t[1, 2]], [t[0, 2] - t[2, 0]], [t[1, 0] - t[0, 1]]])
 
 
-class Reader:
-    """Values of formulas written with known symbols.
+def column(value: Any) -> Any:
+    """Vectors as columns, all else as it is."""
+    value = np.asarray(value, dtype=float)
+    return value.reshape(3, 1) if value.shape == (3,) else value
+
+
+def plain(value: Any) -> Any:
+    """A float, (3,) or (3, 3)."""
+    return float(np.squeeze(value)) if np.size(value) == 1 else np.squeeze(value)
+
+
+def times(a: Any, b: Any) -> Any:
+    """What stands side by side."""
+    scalar = np.ndim(a) == 0 or np.ndim(b) == 0
+    value = a * b if scalar else a @ b
+    return np.squeeze(value) if np.shape(value) == (1, 1) else value
+
+
+def _within(known: Any, used: set[str]) -> Any:
+    """Lengths and scalar products do not depend on the axes: those of a body will do."""
+    return known.within(used) if hasattr(known, "within") else known
+
+
+def _dot(known: Any, a: Value, b: Value) -> Any:
+    return np.squeeze(a(known).T @ b(known))
+
+
+class Parser:
+    """Formulas written with known symbols.
 
     Args:
-        symbols: LaTeX by name.
-        values: by name; (3,) vectors, (3, 3) tensors, floats.
+        symbols: what they are written as; that under a tilde is known, too.
     """
 
-    def __init__(self, symbols: Mapping[str, str], values: Mapping[str, Any]) -> None:
-        self.known: dict[str, Any] = {}
-        for name, latex in symbols.items():
-            value = np.asarray(values[name], dtype=float)
-            value = value.reshape(3, 1) if value.shape == (3,) else value
-            self.known[str(Glyph.of(latex))] = value
-            if value.shape == (3, 1):
-                self.known[str(Glyph.of(latex).tilde())] = tilde(value)
+    def __init__(self, symbols: Iterable[str]) -> None:
+        self.known: dict[str, tuple[str, bool]] = {}
+        for latex in symbols:
+            glyph = Glyph.of(latex)
+            self.known.setdefault(str(glyph), (str(glyph), False))
+            self.known.setdefault(str(glyph.tilde()), (str(glyph), True))
         self.longest = sorted(self.known, key=len, reverse=True)
 
-    def read(self, latex: str) -> Any:
-        """Value of a formula: float, (3,) or (3, 3)."""
-        self.text, self.at = latex, 0
+    def read(self, latex: str) -> tuple[Value, set[str]]:
+        """The formula, and the symbols that it uses."""
+        self.text, self.at, self.used = latex, 0, set[str]()
         value = self._sum()
         assert self.at == len(self.text), f"not understood from {self.text[self.at :]!r}"
-        return float(value) if np.ndim(value) == 0 or value.shape == (1, 1) else np.squeeze(value)
+        return value, self.used
 
     # ---- tokens ------------------------------------------------------------------------
 
@@ -82,62 +110,61 @@ class Reader:
 
     # ---- grammar -----------------------------------------------------------------------
 
-    def _sum(self) -> Any:
-        negative = self._peek() == "-" and bool(self._take())
-        value = self._cross()
-        value = -value if negative else value
+    def _sum(self) -> Value:
+        terms = []
+        sign = -1.0 if self._peek() == "-" and self._take() else 1.0
+        terms.append((sign, self._cross()))
         while self._peek() in ("+", "-"):
             sign = -1.0 if self._take() == "-" else 1.0
-            value = value + sign * self._cross()
+            terms.append((sign, self._cross()))
+        return lambda known: sum(s * term(known) for s, term in terms)
+
+    def _cross(self) -> Value:
+        outside, self.used = self.used, set()
+        value = self._between()
+        self.used = outside | self.used
         return value
 
-    def _cross(self) -> Any:
+    def _between(self) -> Value:
         left = self._product()
         if self._peek() == r"\times":
             self._take()
-            return tilde(left) @ self._product()
+            right = self._product()
+            return lambda known: tilde(left(known)) @ right(known)
         if self._peek() == r"\cdot":
             self._take()
-            return np.squeeze(left.T @ self._product())
+            other, used = self._product(), self.used
+            return lambda known: _dot(_within(known, used), left, other)
         return left
 
-    def _product(self) -> Any:
+    def _product(self) -> Value:
         value = self._power()
-        while self._peek() not in (
-            "",
-            "+",
-            "-",
-            ")",
-            r"\right)",
-            r"\times",
-            r"\cdot",
-            "}",
-            ",",
-            r"\rVert",
-        ):
-            factor = self._power()
-            scalar = np.ndim(value) == 0 or np.ndim(factor) == 0
-            value = value * factor if scalar else value @ factor
-            value = np.squeeze(value) if np.shape(value) == (1, 1) else value
+        while self._peek() not in _ENDS:
+            value = self._side_by_side(value, self._power())
         return value
 
-    def _power(self) -> Any:
+    def _side_by_side(self, a: Value, b: Value) -> Value:
+        return lambda known: times(a(known), b(known))
+
+    def _power(self) -> Value:
         base = self._atom()
         if self._peek() != "^":
             return base
         self._take("^")
         if self.text.startswith(_TRANSPOSED, self.at):
             self.at += len(_TRANSPOSED)
-            return base.T
+            return lambda known: base(known).T
         exponent = self._atom()
-        return base ** float(exponent)
+        return lambda known: base(known) ** float(exponent(known))
 
-    def _atom(self) -> Any:
+    def _atom(self) -> Value:
         token = self._take()
         if token in self.known:
-            return self.known[token]
+            name, crossed = self.known[token]
+            self.used.add(name)
+            return lambda known: tilde(known[name]) if crossed else known[name]
         if token[:1].isdigit():
-            return float(token)
+            return lambda _: float(token)
         if token in ("(", r"\left("):
             value = self._sum()
             self._take(r") \right)")
@@ -148,26 +175,56 @@ class Reader:
             return value
         return self._command(token)
 
-    def _command(self, token: str) -> Any:
+    def _command(self, token: str) -> Value:
         if token == r"\mathbf E":
-            return np.eye(3)
+            return lambda _: np.eye(3)
+        if token == r"\mathbf 0":
+            return lambda _: 0.0
+        if token.startswith(r"\sum_"):
+            index, body = token[5:].strip("{}"), self._cross()
+            return lambda known: known.over_legs(index, body)
+        if token.startswith(r"\left["):
+            place = re.findall(r"\d+|F", token.rpartition("_{")[2])
+            return lambda known: known.reciprocal(place)
         if token == r"\lVert":
-            length = np.linalg.norm(self._sum())
+            outside, self.used = self.used, set()
+            inner, used = self._sum(), self.used
+            self.used = outside | used
             self._take(r"\rVert")
-            return length
+            return lambda known: np.linalg.norm(inner(_within(known, used)))
         if token == r"\frac":
             above, below = self._atom(), self._atom()
-            return above / below
-        if token == r"\sqrt":
-            return np.sqrt(self._atom())
-        if token == r"\widetilde":
-            return tilde(self._atom())
-        if token == r"\mathrm{ax}":
-            return ax(self._atom())
+            return lambda known: above(known) / below(known)
+        one = {
+            r"\sqrt": np.sqrt, r"\widetilde": tilde, r"\mathrm{ax}": ax, r"\mathrm{tr}": np.trace
+        }.get(token)  # fmt: skip
+        if one is not None:
+            argument = self._atom()
+            return lambda known: one(argument(known))
+        return self._function(_FUNCTIONS[token])
+
+    def _function(self, function: Callable[..., Any]) -> Value:
         self._take(r"( \left(")
         arguments = [self._sum()]
         while self._peek() == ",":
             self._take()
             arguments.append(self._sum())
         self._take(r") \right)")
-        return _FUNCTIONS[token](*arguments)
+        return lambda known: function(*(argument(known) for argument in arguments))
+
+
+class Reader:
+    """Values of formulas written with known symbols.
+
+    Args:
+        symbols: LaTeX by name.
+        values: by name; (3,) vectors, (3, 3) tensors, floats.
+    """
+
+    def __init__(self, symbols: Mapping[str, str], values: Mapping[str, Any]) -> None:
+        self.values = {str(Glyph.of(s)): column(values[name]) for name, s in symbols.items()}
+        self.parser = Parser(symbols.values())
+
+    def read(self, latex: str) -> Any:
+        """Value of a formula: float, (3,) or (3, 3)."""
+        return plain(self.parser.read(latex)[0](self.values))

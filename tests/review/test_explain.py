@@ -34,12 +34,13 @@ def test_case_is_forgiven_where_it_is_unique() -> None:
 
 def test_uses_and_users_are_each_others_inverse() -> None:
     compiled = bundle(STEWART)
-    for equation in compiled.derivation.equations():
+    derivation = compiled.derivation
+    for equation in (*derivation.equations(), *derivation.rotations()):
         told = explain(compiled, equation.id)
         assert {r.name for r in told.uses} == names_in(equation.rhs)
         for related in told.used_by:
             if related.id != "output":
-                assert equation.name in names_in(compiled.derivation.definition(related.name).rhs)
+                assert equation.name in names_in(derivation.definition(related.name).rhs)
 
 
 def test_transitively_down_to_what_is_given_and_up_to_the_outputs() -> None:

@@ -6,6 +6,7 @@ from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.report import functions, legs, mechanism, words
 from pne_sym.backends.report.collected import collect
 from pne_sym.backends.report.equations import ChapterWriter, index_rows
+from pne_sym.backends.report.given import GivenWriter
 from pne_sym.backends.report.markdown import escape, inline, table
 from pne_sym.backends.report.names import printer_for
 from pne_sym.backends.report.view import ReportView
@@ -25,6 +26,7 @@ class ReportBackend:
         """What the template prints."""
         derivation = bundle.derivation
         printer = printer_for(derivation)
+        given = GivenWriter(derivation, printer)
         chapters = ChapterWriter(bundle, collect(derivation)).chapters()
         used_laws = {e.law for e in derivation.equations()}
         return ReportView(
@@ -42,9 +44,10 @@ class ReportBackend:
                 ("Law", "What it says"),
                 [(law.value, text) for law, text in words.LAWS.items() if law in used_laws],
             ),
-            notation=legs.platform_notation(derivation, printer),
+            frames=given.frames(None),
+            notation=given.table(None),
             parameters=legs.parameter_table(derivation, None),
-            legs=legs.leg_views(bundle, printer),
+            legs=legs.leg_views(bundle, given),
             chapters=chapters,
             functions=tuple(functions.function_statements(bundle, printer)),
             troubles=functions.troubles(bundle),

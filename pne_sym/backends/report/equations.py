@@ -9,6 +9,7 @@ from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.latex import LatexPrinter
 from pne_sym.backends.report.blocks import block_statements, defines_blocks
 from pne_sym.backends.report.collected import Collected, collected_terms
+from pne_sym.backends.report.given import GivenWriter
 from pne_sym.backends.report.legforce import leg_force_statements
 from pne_sym.backends.report.markdown import display, inline, table, unit
 from pne_sym.backends.report.names import plain_names, printer_for
@@ -22,6 +23,7 @@ from pne_sym.derivation import (
     Equation,
     ReciprocalBasis,
     Trouble,
+    rotations_by_place,
 )
 
 
@@ -34,6 +36,8 @@ class ChapterWriter:
         self.collected = collected
         self.plain = printer_for(self.derivation)
         self.bases = last_duals(self.derivation)
+        self.given = GivenWriter(self.derivation, self.plain)
+        self.rotations = rotations_by_place(self.derivation)
 
     def chapters(self) -> tuple[ChapterView, ...]:
         """All chapters, each with what it has led to."""
@@ -46,9 +50,15 @@ class ChapterWriter:
             f"chapter-{chapter.id}",
             plain_names(chapter.title, self.derivation),
             plain_names(chapter.text, self.derivation),
-            tuple(self.equation(e, printer) for e in chapter.equations),
+            tuple(self.equation(e, printer) for e in self._in_order(chapter)),
             tuple(self._statements(chapter)),
         )
+
+    def _in_order(self, chapter: Chapter) -> Iterator[Equation]:
+        """The equations of a chapter, and rotations as soon as they are known."""
+        for k in range(len(chapter.equations) + 1):
+            yield from chapter.equations[k - 1 : k] if k else ()
+            yield from self.rotations.get((chapter.id, k), ())
 
     def _statements(self, chapter: Chapter) -> Iterator[Statement]:
         same = [c for c in self.derivation.chapters if c.leg_type == chapter.leg_type]
@@ -128,6 +138,9 @@ class ChapterWriter:
                 yield f"Collected by Rules I and II: {inline(text)}."
         if any(b.rows and b.duals[0] == equation.lhs for b in self.derivation.bases):
             yield SCREWS
+        body = next((b for b in self.derivation.body_frames if b.equation is equation), None)
+        if body is not None and (fixed := self.given.fixed_in(body)):
+            yield fixed
         for condition in equation.conditions:
             yield self._condition(equation, condition, printer)
         if equation.name in self.bases:
@@ -180,9 +193,12 @@ def basis_condition(basis: ReciprocalBasis, printer: LatexPrinter) -> str:
 
 def index_rows(derivation: Derivation, printer: LatexPrinter) -> Iterator[tuple[str, ...]]:
     """Every defined symbol with its meaning, unit and equation."""
+    rotations = rotations_by_place(derivation)
     for chapter in derivation.chapters:
         used = printer if chapter.leg_type else printer.with_index()
-        for equation in chapter.equations:
+        places = range(len(chapter.equations) + 1)
+        turns = [e for k in places for e in rotations.get((chapter.id, k), ())]
+        for equation in (*turns, *chapter.equations):
             quantity: Any = derivation.notation[equation.name]
             yield (
                 inline(used.doprint(equation.lhs)),

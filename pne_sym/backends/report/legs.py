@@ -5,26 +5,25 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from pne_sym.backends.bundle import Bundle
-from pne_sym.backends.latex import LatexPrinter
+from pne_sym.backends.report.given import GivenWriter
 from pne_sym.backends.report.markdown import inline, table, unit
 from pne_sym.backends.report.mechanism import model_joints
-from pne_sym.backends.report.names import leg_indices, leg_title, per_leg_names
+from pne_sym.backends.report.names import leg_indices, leg_title
 from pne_sym.backends.report.view import LegView, Table
 from pne_sym.backends.report.words import METHODS
-from pne_sym.derivation import Derivation, LegTypeInfo, ParameterField, names_in
+from pne_sym.derivation import Derivation, LegTypeInfo, ParameterField
 from pne_sym.model.manipulator import ZERO3, Joint, Vector3
 
 _TOLERANCE = 1e-9
 _AXES = "xyz"
-_GIVEN = ("Symbol", "Meaning", "Unit", "From")
 
 
-def leg_views(bundle: Bundle, printer: LatexPrinter) -> tuple[LegView, ...]:
+def leg_views(bundle: Bundle, given: GivenWriter) -> tuple[LegView, ...]:
     """All leg types."""
-    return tuple(_leg(bundle, info, printer) for info in bundle.derivation.leg_types)
+    return tuple(_leg(bundle, info, given) for info in bundle.derivation.leg_types)
 
 
-def _leg(bundle: Bundle, info: LegTypeInfo, printer: LatexPrinter) -> LegView:
+def _leg(bundle: Bundle, info: LegTypeInfo, given: GivenWriter) -> LegView:
     derivation = bundle.derivation
     joints = model_joints(bundle.manipulator, info)
     return LegView(
@@ -36,7 +35,8 @@ def _leg(bundle: Bundle, info: LegTypeInfo, printer: LatexPrinter) -> LegView:
         ),
         tuple(_closing(bundle, info)),
         tuple(_solved(info)),
-        table(_GIVEN, dict.fromkeys(_given_rows(derivation, info.name, printer))),
+        given.frames(info),
+        given.table(info),
         parameter_table(derivation, info.name),
         f"`legs[i]` with i = {ranges(info.indices)}, counted from 0",
     )
@@ -115,11 +115,6 @@ def _closing(bundle: Bundle, info: LegTypeInfo) -> Iterator[str]:
         kind = "pin (the points coincide)"
     offset = "" if end.offset == ZERO3 else f", offset {_offset(end.offset)}"
     yield f"Platform joint: {kind}{offset}."
-    derivation = bundle.derivation
-    for name, (leg_type, signs) in derivation.parameters.branches.items():
-        if leg_type == info.name and name in derivation.notation:
-            symbol = inline(derivation.notation[name].latex)
-            yield f"Assembly branch {symbol}, as at home: {_signs(info, signs)}."
     if not info.is_closed:
         yield _branch(bundle, info)
 
@@ -152,13 +147,6 @@ def _conditions(bundle: Bundle, info: LegTypeInfo) -> str:
     return " and ".join(parts + [f"about moment direction {', '.join(turns)}"] * bool(turns))
 
 
-def _signs(info: LegTypeInfo, signs: Sequence[int]) -> str:
-    if len(set(signs)) == 1:
-        return f"{signs[0]:+d} for every leg"
-    minus = [i + 1 for i, sign in zip(info.indices, signs, strict=True) if sign < 0]
-    return f"-1 for legs {ranges(minus)}, +1 for the others"
-
-
 def _solved(info: LegTypeInfo) -> Iterator[str]:
     reasons = dict(info.reasons)
     for j, method in enumerate(info.methods, 1):
@@ -167,45 +155,7 @@ def _solved(info: LegTypeInfo) -> Iterator[str]:
         yield f"Joint {j}: {words}."
 
 
-# ---- what is given ------------------------------------------------------------------------
-
-
-def platform_notation(derivation: Derivation, printer: LatexPrinter) -> Table:
-    """Given symbols that are not of a leg."""
-    return table(_GIVEN, _given_rows(derivation, None, printer))
-
-
-def _given_rows(
-    derivation: Derivation, leg_type: str | None, printer: LatexPrinter
-) -> Iterator[tuple[str, ...]]:
-    """Symbols that equations use and none defines."""
-    per_leg = per_leg_names(derivation)
-    defined = {e.name for e in derivation.equations()}
-    chapters = [c for c in derivation.chapters if leg_type is None or c.leg_type == leg_type]
-    used = {
-        n
-        for c in chapters
-        for e in c.equations
-        for part in (e.rhs, *e.forms)
-        for n in names_in(part)
-    }
-    for name, quantity in derivation.notation.items():
-        if name in used and name not in defined and (name in per_leg) == (leg_type is not None):
-            symbol = inline(str(printer.glyph_of(name)))
-            yield symbol, quantity.meaning, unit(quantity.unit), _source(derivation, name)
-
-
-def _source(derivation: Derivation, name: str) -> str:
-    """Where the numbers of a given symbol come from."""
-    table = derivation.parameters
-    given = next((g for g in derivation.givens if g.symbol.name == name), None)
-    entries = {n for c in given.components for n in names_in(c)} if given else {name}
-    fields = dict.fromkeys(table.entries[n][0].name for n in sorted(entries & set(table.entries)))
-    if fields:
-        return ", ".join(f"`{field}`" for field in fields)
-    if name in table.branches or not entries:
-        return "structure"
-    return "state"
+# ---- parameters ------------------------------------------------------------------------
 
 
 def parameter_table(derivation: Derivation, leg_type: str | None) -> Table:

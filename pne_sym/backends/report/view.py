@@ -76,6 +76,7 @@ class LegView:
         joints: structure, joint by joint.
         closing: the platform joint, and the assembly branches.
         solved: how each joint is found.
+        frames: axes of its links.
         notation: symbols that are given.
         parameters: live parameters.
         place: the sentence that tells where the parameters stand.
@@ -86,6 +87,7 @@ class LegView:
     joints: Table
     closing: tuple[str, ...]
     solved: tuple[str, ...]
+    frames: Table
     notation: Table
     parameters: Table
     place: str
@@ -107,6 +109,7 @@ class ReportView:
         conventions: sentences.
         marks: notation that is general.
         laws: why equations hold.
+        frames: axes of base and platform.
         notation: symbols that are given, of the platform.
         parameters: of the platform and the surroundings.
         legs: leg types.
@@ -129,6 +132,7 @@ class ReportView:
     conventions: tuple[str, ...]
     marks: Table
     laws: Table
+    frames: Table
     notation: Table
     parameters: Table
     legs: tuple[LegView, ...]
