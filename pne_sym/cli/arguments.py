@@ -15,6 +15,7 @@ COMMANDS = ("list", "all", "check", "explain", "diff", "new", "home", "draw")
 OPTIONS_WITH_VALUE = (
     *("--out", "-o", "--jobs", "-j", "--target"),
     *("--stage", "--tolerance", "--as", "--legs", "--space"),
+    *("--points", "--radii", "--base-angles", "--platform-angles", "--height"),
     *("--pose", "--q", "--path", "--fps", "--azimuth", "--elevation"),
 )
 _OF_THE_PROGRAM = ("--help", "-h", "--version")

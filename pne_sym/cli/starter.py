@@ -4,16 +4,69 @@ from __future__ import annotations
 
 import shlex
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from pne_sym.cli.console import Report
 from pne_sym.cli.faults import told
+from pne_sym.cli.numbers import numbers
 from pne_sym.cli.options import Debug
 
+if TYPE_CHECKING:
+    from pne_sym.starter.points import Geometry
 
-def new(
+
+Points = Annotated[
+    Path | None,
+    typer.Option(
+        "--points",
+        metavar="FILE.csv",
+        show_default=False,
+        help="Joint points (m), a row for each leg: base point in the base frame, platform point "
+        "in the platform frame; x,y,z,x,y,z, in the plane x,y,x,y.",
+    ),
+]
+Radii = Annotated[
+    str | None,
+    typer.Option(
+        "--radii",
+        metavar="BASE,PLATFORM",
+        show_default=False,
+        help="Joint points on two circles of these radii (m), at --base-angles and "
+        "--platform-angles.",
+    ),
+]
+BaseAngles = Annotated[
+    str | None,
+    typer.Option(
+        "--base-angles",
+        metavar="NUMBERS",
+        show_default=False,
+        help="With --radii: an angle (degrees) for each leg's base point.",
+    ),
+]
+PlatformAngles = Annotated[
+    str | None,
+    typer.Option(
+        "--platform-angles",
+        metavar="NUMBERS",
+        show_default=False,
+        help="The same for the platform points. Default: those of the base.",
+    ),
+]
+Height = Annotated[
+    float | None,
+    typer.Option(
+        "--height",
+        metavar="METRES",
+        show_default=False,
+        help="With --points or --radii in space: the platform's origin above the base's at home.",
+    ),
+]
+
+
+def new(  # noqa: PLR0913, PLR0917 - an option each
     path: Annotated[
         Path,
         typer.Argument(
@@ -40,6 +93,11 @@ def new(
             "Default: planar where the legs can move in the plane, else spatial.",
         ),
     ] = None,
+    points: Points = None,
+    radii: Radii = None,
+    base_angles: BaseAngles = None,
+    platform_angles: PlatformAngles = None,
+    height: Height = None,
     force: Annotated[
         bool, typer.Option("--force", "-f", help="Replace a file that stands there.")
     ] = False,
@@ -48,13 +106,50 @@ def new(
 ) -> None:
     """Write a first specification of your own manipulator.
 
-    Its geometry is plausible and closes; it can be generated as it is. Edit the numbers.
+    Its geometry is plausible, or between your own joint points, and closes; it can be
+    generated as it is. Edit the numbers.
     """
     with told(debug=debug):
         from pne_sym.mechanics.mobility import mobility
         from pne_sym.starter import write_starter
 
-        manipulator = write_starter(path, legs, space, force=force)
+        geometry = _geometry(points, radii, base_angles, platform_angles, height)
+        manipulator = write_starter(path, legs, space, geometry, force=force)
         report = Report(quiet=quiet)
         report.line(f"wrote {path}: {mobility(manipulator)}")
         report.line(f"next: edit it, then {shlex.join(['pne-gen', str(path)])} --out generated/")
+
+
+def _geometry(
+    points: Path | None,
+    radii: str | None,
+    base: str | None,
+    platform: str | None,
+    height: float | None,
+) -> Geometry | None:
+    """Where the legs stand, or None; options that do not go together are refused."""
+    from pne_sym.generation import InputError
+    from pne_sym.starter import PointsFile, Rings
+
+    if points is not None and (radii or base or platform):
+        raise InputError("--points and --radii exclude each other")
+    if points is not None:
+        return PointsFile(points, height)
+    if radii is None:
+        if base or platform or height is not None:
+            raise InputError("angles and --height belong to --radii or --points")
+        return None
+    if base is None:
+        raise InputError("--radii needs --base-angles, an angle for each leg")
+    angles = _numbers("--base-angles", base)
+    others = angles if platform is None else _numbers("--platform-angles", platform)
+    return Rings(_numbers("--radii", radii), angles, others, height)
+
+
+def _numbers(option: str, text: str) -> list[float]:
+    from pne_sym.generation import InputError
+
+    try:
+        return numbers(text)
+    except ValueError as error:
+        raise InputError(f"{option}: {error}") from error

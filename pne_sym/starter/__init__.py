@@ -7,6 +7,7 @@
 """
 
 from pne_sym.starter.notation import parse_legs
+from pne_sym.starter.points import PointsFile, Rings
 from pne_sym.starter.write import starter_text, write_starter
 
-__all__ = ["parse_legs", "starter_text", "write_starter"]
+__all__ = ["PointsFile", "Rings", "parse_legs", "starter_text", "write_starter"]

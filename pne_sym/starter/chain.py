@@ -6,7 +6,7 @@ cylinder and rod, and carriages; angles at home keep the leg bent, so that nothi
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from pne_sym.model.joint_kinds import JointKind
 from pne_sym.starter.notation import LegGroup, Letter
@@ -64,13 +64,17 @@ def axis_choices(letter: Letter, *, plane: bool) -> tuple[Axes, ...]:
     return letter.kind.plane_choices if plane else letter.kind.axis_choices
 
 
-def build_chain(group: LegGroup, axes: tuple[Axes, ...], side: float) -> Chain:
+def build_chain(
+    group: LegGroup, axes: tuple[Axes, ...], side: float, *, concentric: bool, straight: bool
+) -> Chain:
     """The chain for one choice of axes.
 
     Args:
         group: the legs.
         axes: of every joint.
         side: how far legs lean to the side at home, rad.
+        concentric: all axes pass through one point.
+        straight: an extensible leg does not lean at all.
     """
     letters = group.letters
     bars = _bars(letters, axes)
@@ -80,12 +84,39 @@ def build_chain(group: LegGroup, axes: tuple[Axes, ...], side: float) -> Chain:
     for index, (letter, own) in enumerate(zip(letters, axes, strict=True)):
         telescope = _is_telescope(letters, axes, index)
         after = _is_telescope(letters, axes, index + 1)
-        bend = BEND[bends % len(BEND)] if bars > 1 else 0.35
-        joint, gap_after = _joint(letter, own, gap, _Place(length, telescope, after, bend, side))
+        bend = BEND[bends % len(BEND)] if bars > 1 else 0.0 if straight else 0.35
+        place = _Place(length, telescope, after, bend, 0.0 if straight else side)
+        joint, gap_after = _joint(letter, own, gap, place)
         bends += not letter.kind.slides and any(axis != "x" for axis in own)
         joints.append(joint)
-        gap = gap_after
+        gap = 0.0 if concentric else gap_after
     return Chain(tuple(joints), gap)
+
+
+def scaled(chain: Chain, factor: float) -> Chain:
+    """The chain with all lengths multiplied; masses with them, as of bars of equal thickness."""
+    joints = []
+    for joint in chain.joints:
+        fields = {**joint.fields, "link": _scaled_link(joint.fields["link"], factor)}
+        if "offset" in fields:
+            fields["offset"] = _times(fields["offset"], factor)
+        slides = [part.slides and not part.pitched for part in joint.letter.kind.parts]
+        home = [round(x * factor, 6) if s else x for x, s in zip(joint.home, slides, strict=True)]
+        joints.append(replace(joint, fields=fields, home=tuple(home)))
+    return Chain(tuple(joints), round(chain.end * factor, 6))
+
+
+def _scaled_link(link: object, factor: float) -> Plain:
+    assert isinstance(link, dict)
+    powers = {"mass": 1, "centre_of_mass": 1, "inertia": 3}
+    return {name: _times(value, factor ** powers[name]) for name, value in link.items()}
+
+
+def _times(value: object, factor: float) -> object:
+    if isinstance(value, list):
+        return [_times(item, factor) for item in value]
+    assert isinstance(value, float)
+    return float(f"{value * factor:.4g}")
 
 
 @dataclass(frozen=True)

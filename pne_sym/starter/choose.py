@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +15,7 @@ from pne_sym.model.errors import SpecError
 from pne_sym.model.joint_kinds import WrittenJoint
 from pne_sym.model.joints import read_joint
 from pne_sym.model.kinematics import Pose, chain_pose
+from pne_sym.model.legs import is_plane
 from pne_sym.model.manipulator import (
     IDENTITY3,
     ZERO3,
@@ -22,6 +23,7 @@ from pne_sym.model.manipulator import (
     Leg,
     PlatformJoint,
     PlatformJointKind,
+    Space,
     Vector3,
 )
 from pne_sym.starter.chain import Axes, Chain, axis_choices, build_chain
@@ -47,6 +49,9 @@ class Shape:
         axis_link: of a platform joint U or R in space, name of a direction.
         axis_leg: the platform's axis of it, in the leg frame.
         tip: the platform joint in the leg frame, m.
+        last: axes of the last link in the leg frame.
+        concentric: all axes pass through the fixed centre.
+        is_welded: the platform joint is rigid.
         mirrored: whether this is the mirror image.
     """
 
@@ -56,6 +61,9 @@ class Shape:
     axis_link: str
     axis_leg: Array
     tip: Array
+    last: Array
+    concentric: bool = False
+    is_welded: bool = False
     mirrored: bool = False
 
     @property
@@ -64,17 +72,26 @@ class Shape:
         return displacements(self.chain, mirrored=self.mirrored)
 
 
-def choose_shape(group: LegGroup, *, plane: bool, side: float) -> Shape:
+def is_concentric(group: LegGroup, space: Space) -> bool:
+    """Whether all axes of a leg pass through the fixed centre, as those of hinges alone must."""
+    hinges = all(not letter.kind.slides for letter in group.letters)
+    return space is Space.SPHERICAL and hinges and group.platform.moments > 0
+
+
+def choose_shape(group: LegGroup, space: Space, *, side: float, straight: bool = False) -> Shape:
     """The first usual choice of axes whose freedoms are well independent, else the best.
+
+    Where the platform does not turn, one that leaves all of its motions free comes first.
 
     Raises:
         SpecError: freedoms that are always dependent, or too few marked extra.
     """
+    plane, concentric = is_plane(space), is_concentric(group, space)
     best: tuple[float, Shape] | None = None
     tried = itertools.islice(_candidates(group, plane=plane), _MOST_TRIED)
     for axes, axis_link in tried:
-        chain = build_chain(group, axes, side)
-        score, shape = _judged(group, chain, axis_link, plane=plane)
+        chain = build_chain(group, axes, side, concentric=concentric, straight=straight)
+        score, shape = _judged(group, chain, axis_link, space)
         if best is None or score > best[0] + 1e-9:
             best = (score, shape)
         if score >= GOOD:
@@ -94,9 +111,7 @@ def reshaped(shape: Shape, *, mirrored: bool, plane: bool, platform: PlatformJoi
     """The same leg or its mirror image, with tip and axes at its own home."""
     tip, frame = _end(shape.chain, plane=plane, mirrored=mirrored)
     axis_leg = _platform_axis(platform, frame, shape.axis_link)
-    return Shape(
-        shape.chain, shape.extra, shape.idle, shape.axis_link, axis_leg, tip, mirrored=mirrored
-    )
+    return replace(shape, axis_leg=axis_leg, tip=tip, last=frame, mirrored=mirrored)
 
 
 def displacements(chain: Chain, *, mirrored: bool) -> tuple[float, ...]:
@@ -138,17 +153,22 @@ def in_space(fields: dict[str, object], plane: bool) -> dict[str, object]:
 def _candidates(group: LegGroup, *, plane: bool) -> Iterator[tuple[tuple[Axes, ...], str]]:
     """Axes of all joints, and of the platform joint; the first joint varies fastest."""
     choices = [axis_choices(letter, plane=plane) for letter in group.letters]
-    ends = ("",) if plane or not group.platform.fields else ("y", "z", "x")
+    ends = ("y", "z", "x") if not plane and "axis_link" in group.platform.fields else ("",)
     for end in ends:
         for reverse in itertools.product(*reversed(choices)):
             yield tuple(reversed(reverse)), end
 
 
-def _judged(group: LegGroup, chain: Chain, axis_link: str, *, plane: bool) -> tuple[float, Shape]:
-    """Independence of the freedoms, and the shape with its extra joints chosen."""
+def _judged(group: LegGroup, chain: Chain, axis_link: str, space: Space) -> tuple[float, Shape]:
+    """Independence of the freedoms, and the shape with its extra joints chosen.
+
+    Legs that hold a platform which does not turn are judged below all others.
+    """
+    plane = is_plane(space)
     tip, frame = _end(chain, plane=plane, mirrored=False)
     axis_leg = _platform_axis(group.platform, frame, axis_link)
-    columns = _columns(group, chain, axis_link, axis_leg, tip, plane=plane)
+    columns, by_twist = _columns(group, chain, axis_link, axis_leg, (tip, frame), plane=plane)
+    holds = space is Space.TRANSLATIONAL and _rank(np.hstack([columns, by_twist])) > _rank(columns)
     sizes = np.linalg.norm(columns, axis=0)
     still = sizes < 1e-9
     columns = columns / np.where(still, 1.0, sizes)
@@ -160,7 +180,10 @@ def _judged(group: LegGroup, chain: Chain, axis_link: str, *, plane: bool) -> tu
         if worst > score + 1e-9:
             score, extra = worst, chosen
     idle = sum(bool(a and b) for a, b in zip(extra, still, strict=True))
-    return score, Shape(chain, extra, idle, axis_link, axis_leg, tip)
+    welded = "rotation" in group.platform.fields
+    concentric = is_concentric(group, space)
+    shape = Shape(chain, extra, idle, axis_link, axis_leg, tip, frame, concentric, welded)
+    return (0.1 * score if holds else score), shape
 
 
 def _extra_sets(group: LegGroup, count: int, conditions: int) -> Iterator[tuple[bool, ...]]:
@@ -185,19 +208,31 @@ def _extra_sets(group: LegGroup, count: int, conditions: int) -> Iterator[tuple[
 
 
 def _columns(
-    group: LegGroup, chain: Chain, axis_link: str, axis_leg: Array, tip: Array, *, plane: bool
-) -> Array:
-    """Rates of the closure gap by each freedom, for a platform parallel to the leg frame."""
+    group: LegGroup,
+    chain: Chain,
+    axis_link: str,
+    axis_leg: Array,
+    end: tuple[Array, Array],
+    *,
+    plane: bool,
+) -> tuple[Array, Array]:
+    """Rates of the closure gap by freedoms and by translations, platform parallel to the leg."""
+    tip, last = end
     kind = PlatformJointKind.SPHERICAL if plane else group.platform
-    x, y, z = axis_leg.tolist()
-    platform = (
-        PlatformJoint(kind, (chain.end, 0.0, 0.0), _DIRECTIONS[axis_link], (x, y, z))
-        if axis_link
-        else PlatformJoint(kind, (chain.end, 0.0, 0.0))
-    )
+    platform = PlatformJoint(kind, (chain.end, 0.0, 0.0))
+    if axis_link:
+        x, y, z = axis_leg.tolist()
+        platform = replace(platform, axis_link=_DIRECTIONS[axis_link], axis_platform=(x, y, z))
+    if "rotation" in kind.fields:
+        platform = replace(platform, rotation=last.T.tolist())
     leg = Leg(ZERO3, IDENTITY3, freedoms(chain, plane=plane), platform, ZERO3)
-    _, by_q, _ = leg_gap(leg, np.array(displacements(chain, mirrored=False)), Pose(tip, np.eye(3)))
-    return by_q[:2] if plane else by_q
+    q = np.array(displacements(chain, mirrored=False))
+    _, by_q, by_twist = leg_gap(leg, q, Pose(tip, np.eye(3)))
+    return (by_q[:2], by_twist[:2, :2]) if plane else (by_q, by_twist[:, :3])
+
+
+def _rank(matrix: Array) -> int:
+    return int(np.linalg.matrix_rank(matrix, tol=1e-8))
 
 
 def _end(chain: Chain, *, plane: bool, mirrored: bool) -> tuple[Array, Array]:

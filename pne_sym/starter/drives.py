@@ -4,41 +4,110 @@ from __future__ import annotations
 
 import itertools
 import math
+import warnings
 from collections.abc import Iterator
 
 from pne_sym.mechanics.mobility import mobility
+from pne_sym.model.errors import SpecError, SpecNote
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.starter.choose import Shape
-from pne_sym.starter.notation import LegGroup, is_marked
+from pne_sym.starter.notation import SOURCE, LegGroup, is_guide, is_marked
 
 Flags = tuple[bool, ...]
 
 _MOST_DRIVES = 40
+_MOST_NUMBERS = 20000
+_FEW = 4
+
+
+def check_drives(manipulator: Manipulator, groups: tuple[LegGroup, ...]) -> None:
+    """Refuse what has not as many actuators as degrees of freedom; tell redundant ones.
+
+    Raises:
+        SpecError: fewer actuators than degrees of freedom, or some that cannot hold all of
+            them, or legs that hold the platform in this arrangement.
+    """
+    found = mobility(manipulator)
+    freedoms = found.freedoms - found.passive
+    told = f"{_count(found.drives, 'actuator')} for {_count(freedoms, 'degree')} of freedom"
+    if found.drives < freedoms:
+        raise SpecError(SOURCE, "", told, "more joints marked by _, or none to have them chosen")
+    if found.undriven > found.passive:
+        raise SpecError(
+            SOURCE,
+            "",
+            f"{told}, which cannot hold the mechanism at home wherever the legs stand",
+            "other actuated joints, or other legs",
+        )
+    if found.drives == freedoms:
+        return
+    if found.constraints and not is_marked(groups) and not any(is_guide(g, groups) for g in groups):
+        raise SpecError(
+            SOURCE,
+            "",
+            f"{told}: in general position the legs put {found.constraints} constraints on the "
+            "platform, more than such machines have by their parallel and common axes",
+            "a specification written by hand, see docs/robots.md",
+        )
+    warnings.warn(
+        f"{SOURCE}: {told}: redundantly actuated, as legs that are alike have as many each",
+        SpecNote,
+        stacklevel=2,
+    )
+
+
+def _count(number: int, thing: str) -> str:
+    return f"{number} {thing}{'' if number == 1 else 's'}"
 
 
 def choose_drives(
     groups: tuple[LegGroup, ...], shapes: tuple[Shape, ...], free: Manipulator
-) -> tuple[Flags, ...]:
-    """The marked drives; else as many in each leg as the mechanism needs, slides first."""
+) -> list[tuple[Flags, ...]]:
+    """The marked drives; else, for every way to give each leg a number, slides first.
+
+    As many as the mechanism needs, where legs that are alike can have them; a guide has none.
+    Where they cannot, the least number in each leg that is enough.
+    """
     if is_marked(groups):
-        return tuple(
-            tuple(
-                flag for letter in group.letters for flag in letter.kind.driven_parts(letter.driven)
-            )
-            for group in groups
-        )
-    total = sum(group.count for group in groups)
+        marked = [[f for x in g.letters for f in x.kind.driven_parts(x.driven)] for g in groups]
+        return [tuple(map(tuple, marked))]
     extra = sum(g.count * sum(s.extra) for g, s in zip(groups, shapes, strict=True))
-    each = math.ceil(max(mobility(free).freedoms - extra, 1) / total)
-    result = []
-    for group, shape in zip(groups, shapes, strict=True):
-        order = [k for k in _preferred(group) if not shape.extra[k]]
-        chosen = set(order[:each])
-        # Surplus freedoms that move the leg are driven; a spin about its line stays passive.
-        moving = [k for k, is_extra in enumerate(shape.extra) if is_extra]
-        chosen |= set(moving) if not shape.idle else set()
-        result.append(tuple(k in chosen for k in range(len(shape.extra))))
-    return tuple(result)
+    needed = max(mobility(free).freedoms - extra, 1)
+    return [
+        tuple(_driven(g, s, n) for g, s, n in zip(groups, shapes, numbers, strict=True))
+        for numbers in _numbers(groups, shapes, needed)
+    ]
+
+
+def _numbers(
+    groups: tuple[LegGroup, ...], shapes: tuple[Shape, ...], needed: int
+) -> list[tuple[int, ...]]:
+    """Drives of a leg of each group: even numbers first."""
+    guides = [is_guide(group, groups) for group in groups]
+    least = [0 if g or any(s.extra) else 1 for g, s in zip(guides, shapes, strict=True)]
+    own = [len(s.extra) - sum(s.extra) for s in shapes]
+    most = [0 if guide else min(n, needed) for guide, n in zip(guides, own, strict=True)]
+    choices = itertools.product(*(range(a, b + 1) for a, b in zip(least, most, strict=True)))
+    exact = [
+        numbers
+        for numbers in itertools.islice(choices, _MOST_NUMBERS)
+        if sum(g.count * n for g, n in zip(groups, numbers, strict=True)) == needed
+    ]
+    if exact:
+        return sorted(exact, key=lambda numbers: (max(numbers) - min(numbers), numbers))[:_FEW]
+    total = sum(g.count for g, guide in zip(groups, guides, strict=True) if not guide)
+    each = math.ceil(needed / total)
+    return [tuple(min(each, n) for n in most)]
+
+
+def _driven(group: LegGroup, shape: Shape, number: int) -> Flags:
+    """Which freedoms of a leg are driven."""
+    order = [k for k in _preferred(group) if not shape.extra[k]]
+    chosen = set(order[:number])
+    # Surplus freedoms that move the leg are driven; a spin about its line stays passive.
+    moving = [k for k, is_extra in enumerate(shape.extra) if is_extra]
+    chosen |= set(moving) if not shape.idle else set()
+    return tuple(k in chosen for k in range(len(shape.extra)))
 
 
 def other_drives(poor: tuple[Flags, ...], shapes: tuple[Shape, ...]) -> Iterator[tuple[Flags, ...]]:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 from pne_sym.mechanics.mobility import drive_quality
-from pne_sym.model.errors import SpecError, SpecWarning
+from pne_sym.model.errors import SpecError, SpecNote, SpecWarning
 from pne_sym.model.joint_kinds import WrittenJoint
 from pne_sym.model.kind import Kind
 from pne_sym.model.legs import is_plane
@@ -17,8 +18,9 @@ from pne_sym.model.platform_kinds import PlatformJointKind
 from pne_sym.model.reader import from_mapping
 from pne_sym.starter.choose import Shape, choose_shape, in_space
 from pne_sym.starter.drives import Flags, choose_drives, other_drives
-from pne_sym.starter.notation import SOURCE, LegGroup, is_marked
-from pne_sym.starter.place import HEIGHT, Placed, leg_names, place_legs
+from pne_sym.starter.notation import SOURCE, LegGroup, is_guide, is_marked
+from pne_sym.starter.place import CORNER, HEIGHT, Placed, leg_names, place_legs, stretch
+from pne_sym.starter.points import Points
 
 Plain = dict[str, object]
 
@@ -63,14 +65,20 @@ def default_space(groups: tuple[LegGroup, ...]) -> Space:
     return Space.PLANAR if flat else Space.SPATIAL
 
 
-def make_plan(name: str, title: str, groups: tuple[LegGroup, ...], space: Space) -> Plan:
+def make_plan(
+    name: str,
+    title: str,
+    groups: tuple[LegGroup, ...],
+    space: Space,
+    points: Points | None = None,
+) -> Plan:
     """The arrangement, of a few usual ones, whose drives hold the platform best.
 
     Raises:
         SpecError: the legs do not fit the space, or their freedoms are dependent.
     """
     _check_letters(groups, space)
-    draft = _Draft(name, title, groups, space)
+    draft = _Draft(name, title, groups, space, points)
     best = _first_good(draft.plans(None))
     if best[0] < _HELD and not is_marked(groups):
         other = _first_good(draft.plans(best[1]))
@@ -97,6 +105,7 @@ class _Draft:
     title: str
     groups: tuple[LegGroup, ...]
     space: Space
+    points: Points | None = None
 
     def plans(self, poor: Plan | None) -> Iterator[tuple[float, Plan]]:
         """Arrangements with how well the drives hold the platform.
@@ -106,27 +115,81 @@ class _Draft:
         """
         plane = is_plane(self.space)
         for side in _SIDES[:1] if plane else _SIDES:
-            shapes = tuple(choose_shape(group, plane=plane, side=side) for group in self.groups)
+            shapes = tuple(self._shape(group, side) for group in self.groups)
+            if self.points:
+                shapes = stretch(self.groups, shapes, self.points)
             if poor:
                 drives = list(other_drives(poor.drives, shapes))
             else:
-                drives = [choose_drives(self.groups, shapes, self._free(shapes))]
-            for (tilt, mirror), driven in itertools.product(_options(plane), drives):
-                legs = place_legs(self.groups, shapes, self.space, tilt=tilt, mirror=mirror)
-                yield self._plan(shapes, driven, legs)
+                drives = choose_drives(self.groups, shapes, self._free(shapes))
+            for (tilt, mirror), driven in itertools.product(_options(self.space), drives):
+                yield self._plan(shapes, driven, self._legs(shapes, tilt, mirror=mirror))
+
+    def _shape(self, group: LegGroup, side: float) -> Shape:
+        """A leg; a guide is straight if its freedoms are independent so."""
+        if is_guide(group, self.groups):
+            with contextlib.suppress(SpecError):
+                return choose_shape(group, self.space, side=side, straight=True)
+        return choose_shape(group, self.space, side=side)
+
+    def _legs(self, shapes: tuple[Shape, ...], tilt: float, *, mirror: bool) -> list[Placed]:
+        return place_legs(
+            self.groups, shapes, self.space, tilt=tilt, mirror=mirror, points=self.points
+        )
 
     def _plan(
         self, shapes: tuple[Shape, ...], drives: tuple[Flags, ...], legs: list[Placed]
     ) -> tuple[float, Plan]:
+        spec, manipulator = self._made(shapes, drives, legs)
+        return drive_quality(manipulator), Plan(self.groups, shapes, drives, spec)
+
+    def _made(
+        self, shapes: tuple[Shape, ...], drives: tuple[Flags, ...], legs: list[Placed]
+    ) -> tuple[Plain, Manipulator]:
+        """The specification, with a home that closes, and what it describes."""
         spec = _spec(self.name, self.title, self.groups, shapes, drives, legs, self.space)
-        return drive_quality(_read(spec)), Plan(self.groups, shapes, drives, spec)
+        if not self.points:
+            return spec, _read(spec)
+        home = _table(spec["home"])
+        _set_height(spec, self.space, self.points.height)
+        found = _closed(spec)
+        ends = list(itertools.accumulate((len(leg.joints) for leg in found.legs), initial=0))
+        home["X"] = [round(x, 12) for x in found.home.X]
+        home["q"] = [[round(x, 9) for x in found.home.q[a:b]] for a, b in itertools.pairwise(ends)]
+        return spec, found
 
     def _free(self, shapes: tuple[Shape, ...]) -> Manipulator:
         """The mechanism without any drive."""
-        tilt, mirror = next(_options(is_plane(self.space)))
-        legs = place_legs(self.groups, shapes, self.space, tilt=tilt, mirror=mirror)
+        tilt, mirror = next(_options(self.space))
         none = tuple((False,) * len(shape.extra) for shape in shapes)
-        return _read(_spec(self.name, self.title, self.groups, shapes, none, legs, self.space))
+        return self._made(shapes, none, self._legs(shapes, tilt, mirror=mirror))[1]
+
+
+def _closed(spec: Plain) -> Manipulator:
+    """The legs closed near their usual bend, or as they can be."""
+    home = _table(spec["home"])
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", SpecWarning)
+        warnings.simplefilter("ignore", SpecNote)
+        try:
+            return from_mapping(spec, SOURCE)
+        except SpecError:
+            return from_mapping({**spec, "home": {"X": home["X"]}}, SOURCE)
+
+
+def _set_height(spec: Plain, space: Space, height: float) -> None:
+    """The platform where it stands at home."""
+    X = _table(spec["home"])["X"]
+    assert isinstance(X, list)
+    if space is Space.SPHERICAL:
+        spec["fixed_centre"] = [0.0, 0.0, height]
+    elif not is_plane(space):
+        X[2] = height
+
+
+def _table(value: object) -> Plain:
+    assert isinstance(value, dict)
+    return value
 
 
 def _read(spec: Plain) -> Manipulator:
@@ -135,8 +198,12 @@ def _read(spec: Plain) -> Manipulator:
         return from_mapping(spec, SOURCE)
 
 
-def _options(plane: bool) -> Iterator[tuple[float, bool]]:
-    return itertools.product(_TILTS if plane else (0.0,), (False,) if plane else (True, False))
+def _options(space: Space) -> Iterator[tuple[float, bool]]:
+    """Tilts of the legs, degrees, and whether every other leg is mirrored."""
+    if is_plane(space):
+        return itertools.product(_TILTS, (False,))
+    tilts = (0.0, 90.0 - CORNER, CORNER) if space is Space.TRANSLATIONAL else (0.0,)
+    return itertools.product(tilts, (True, False))
 
 
 def _check_letters(groups: tuple[LegGroup, ...], space: Space) -> None:

@@ -11,15 +11,17 @@ from dataclasses import dataclass, replace
 
 from pne_sym.model.errors import SpecError, show
 from pne_sym.model.joint_kinds import WrittenJoint
-from pne_sym.model.kind import letters
 from pne_sym.model.legs import MAX_LEGS
 from pne_sym.model.platform_kinds import PlatformJointKind
 
-PLATFORM = {kind.letter: kind for kind in PlatformJointKind if kind.in_architecture}
-"""Platform joints that the notation has."""
-_BY_MOMENTS = sorted(PLATFORM.values(), key=lambda kind: kind.moments)
+PLATFORM = {k.in_architecture: k for k in PlatformJointKind if k.in_architecture}
+"""Platform joints that the notation has; W (welded) is the rigid one."""
+_BY_MOMENTS = sorted(PLATFORM, key=lambda letter: PLATFORM[letter].moments)
+_ENDS = f"{', '.join(_BY_MOMENTS[:-1])} or {_BY_MOMENTS[-1]}"
 MOST_FREEDOMS = 7
 SOURCE = "--legs"
+_GUIDED = 3
+"""Legs beside a guide, at least."""
 
 _GROUP = re.compile(r"(?:([0-9]{1,4})-)?((?:_?[A-Za-z]\*?)+)")
 _LETTER = re.compile(r"(_?)([A-Za-z])(\*?)")
@@ -66,7 +68,9 @@ class LegGroup:
     @property
     def plain(self) -> str:
         """The letters without marks."""
-        return "".join(letter.kind.letter for letter in self.letters) + self.platform.letter
+        return (
+            "".join(letter.kind.letter for letter in self.letters) + self.platform.in_architecture
+        )
 
 
 def parse_legs(text: str) -> tuple[LegGroup, ...]:
@@ -100,6 +104,12 @@ def is_marked(groups: tuple[LegGroup, ...]) -> bool:
     return any(letter.driven for group in groups for letter in group.letters)
 
 
+def is_guide(group: LegGroup, groups: tuple[LegGroup, ...]) -> bool:
+    """Whether it is a single leg without drives that holds the platform in the middle."""
+    others = sum(other.count for other in groups if other is not group)
+    return group.count == 1 and group.platform.moments > 0 and others >= _GUIDED
+
+
 def _group(part: str) -> LegGroup:
     match = _GROUP.fullmatch(part)
     if not match:
@@ -124,7 +134,7 @@ def _leg(part: str, count: int, written: list[tuple[str, str, str]]) -> LegGroup
     if last not in PLATFORM:
         raise _fault(
             f"platform joint {last!r} in {show(part)}",
-            f"a leg that ends in {letters(_BY_MOMENTS)} (the last letter is the platform joint)",
+            f"a leg that ends in {_ENDS} (the last letter is the platform joint)",
         )
     if any(marks):
         raise _fault(f"a mark at the platform joint of {show(part)}", "marks of other joints only")

@@ -8,23 +8,30 @@ import textwrap
 from collections.abc import Iterator
 from pathlib import Path
 
-from pne_sym.mechanics.mobility import check_mobility, mobility
+from pne_sym.mechanics.mobility import mobility
 from pne_sym.model.entry import Entry, nearest
 from pne_sym.model.errors import SpecError, show
 from pne_sym.model.legs import is_plane
 from pne_sym.model.manipulator import Manipulator, Space
 from pne_sym.model.names import read_name
 from pne_sym.model.reader import from_text
+from pne_sym.starter.drives import check_drives
 from pne_sym.starter.layout import Plan, default_space, make_plan
 from pne_sym.starter.notation import LegGroup, parse_legs
 from pne_sym.starter.place import leg_names
+from pne_sym.starter.points import Geometry
 from pne_sym.starter.words import ADJECTIVES, HEAD, HOME, LEGS, SPACES, joint_comment
 
 SUFFIX = ".toml"
 
 
 def write_starter(
-    path: Path, legs: str, space: str | None = None, *, force: bool = False
+    path: Path,
+    legs: str,
+    space: str | None = None,
+    geometry: Geometry | None = None,
+    *,
+    force: bool = False,
 ) -> Manipulator:
     """Write a first specification; return the manipulator that it describes.
 
@@ -32,11 +39,13 @@ def write_starter(
         path: a `.toml` file to be; its stem becomes the manipulator's name.
         legs: the architecture, such as 6-UPS.
         space: the task space; default: the plane where the legs fit it, else space.
+        geometry: where the legs stand; default: evenly around the platform.
         force: replace a file that stands there.
 
     Raises:
-        SpecError: the name, the architecture or the space is at fault, the method
-            does not cover it, the file stands there already, or cannot be written.
+        SpecError: the name, the architecture, the space or the points are at fault; the
+            actuators are not what the freedoms ask for; the method does not cover it; the
+            file stands there already, or cannot be written.
     """
     where = str(path)
     if path.suffix != SUFFIX:
@@ -44,10 +53,10 @@ def write_starter(
     name = read_name(Entry(where, "", path.stem))
     if (path.exists() or path.is_symlink()) and not force:
         raise SpecError(where, "", "the file exists", "another name, or --force to replace it")
-    text = starter_text(name, legs, space)
+    text = starter_text(name, legs, space, geometry)
     manipulator = from_text(text, SUFFIX, where)
-    check_mobility(manipulator)
     _check_derivable(manipulator)
+    check_drives(manipulator, parse_legs(legs))
     try:
         _write(path, text, replace=force)
     except FileExistsError:
@@ -57,17 +66,20 @@ def write_starter(
     return manipulator
 
 
-def starter_text(name: str, legs: str, space: str | None = None) -> str:
+def starter_text(
+    name: str, legs: str, space: str | None = None, geometry: Geometry | None = None
+) -> str:
     """The text of a first specification.
 
     Raises:
-        SpecError: the architecture or the space is at fault.
+        SpecError: the architecture, the space or the points are at fault.
     """
     groups = parse_legs(legs)
     chosen = _space(space) if space is not None else default_space(groups)
     architecture = "+".join(f"{group.count}-{group.plain}" for group in groups)
     title = f"{ADJECTIVES[chosen]} {architecture} manipulator"
-    plan = make_plan(name, title[:1].upper() + title[1:120], groups, chosen)
+    points = geometry.points(groups, chosen) if geometry else None
+    plan = make_plan(name, title[:1].upper() + title[1:120], groups, chosen, points)
     return "\n".join(_lines(plan, chosen)) + "\n"
 
 

@@ -92,6 +92,6 @@ def test_the_example_in_python(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
 def test_the_notation_of_new() -> None:
     page = PAGE.partition("## A first file")[2].partition("## In an editor")[0]
     examples = re.findall(r"^\| `([0-9]-[^`]+)`", page, flags=re.MULTILINE)
-    assert len(examples) == 4
+    assert len(examples) == 5
     for architecture in examples + re.findall(r"--legs (\S+)", page):
         assert starter_text("my_robot", architecture)

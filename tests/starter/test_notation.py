@@ -30,7 +30,7 @@ def test_marks() -> None:
         ("", "value ''; expected COUNT-LETTERS"),
         ("6UPS", "value '6UPS'; expected COUNT-LETTERS"),
         ("6-UPX", "joint 'X' in '6-UPX'; expected R revolute"),
-        ("3-RRP", "platform joint 'P' in '3-RRP'; expected a leg that ends in S, U or R"),
+        ("3-RRP", "platform joint 'P' in '3-RRP'; expected a leg that ends in S, U, R or W"),
         ("3-S", "leg '3-S'; expected at least one joint before the platform joint"),
         ("0-UPS", "0 legs 'UPS'; expected one leg or more"),
         ("129-UPS", "129 legs; expected 1 to 128 legs"),

@@ -23,6 +23,11 @@ class Rigid(PlatformJointKind):
     open = "its last link and the platform are not turned as they are joined"
     look = Look.BLOCK
 
+    @property
+    def in_architecture(self) -> str:
+        """Welded."""
+        return "W"
+
     def closures(self, joint: Stated) -> list[Closure]:
         """The platform's axes."""
         if joint.rotation is None:
