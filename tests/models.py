@@ -47,7 +47,7 @@ def _engine() -> str:
 
 
 # At import, when the engine has been: what is edited during a run is not taken for what ran.
-_KEPT = _ROOT / ".pytest_cache" / "models" / _engine()
+KEPT = _ROOT / ".pytest_cache" / "models" / _engine()
 _STEP = re.compile(r"\.?([a-z_]+)|\[(\d+)\]")
 
 
@@ -68,7 +68,7 @@ def bundle(manipulator: Manipulator) -> Bundle:
     """The compiled manipulator: derivation and program."""
     kept = _place(manipulator, "pickle")
     if not kept.exists():
-        _keep(kept, pickle.dumps(compile_bundle(manipulator)))
+        keep(kept, pickle.dumps(compile_bundle(manipulator)))
     found: Bundle = pickle.loads(kept.read_bytes())
     return found
 
@@ -83,21 +83,21 @@ def texts(manipulator: Manipulator) -> tuple[str, str]:
             NumpyBackend().emit(compiled)[f"{compiled.name}.py"],
             ManifestBackend().emit(compiled)[f"{compiled.name}.json"],
         )
-        _keep(kept, json.dumps(made).encode())
+        keep(kept, json.dumps(made).encode())
     module_text, manifest_text = json.loads(kept.read_bytes())
     return module_text, manifest_text
 
 
 def _place(manipulator: Manipulator, suffix: str) -> Path:
     """The file for what is made of a manipulator."""
-    return _KEPT / f"{hashlib.sha256(repr(manipulator).encode()).hexdigest()[:32]}.{suffix}"
+    return KEPT / f"{hashlib.sha256(repr(manipulator).encode()).hexdigest()[:32]}.{suffix}"
 
 
-def _keep(kept: Path, made: bytes) -> None:
+def keep(kept: Path, made: bytes) -> None:
     """Store, complete at every moment for other workers to read."""
-    _KEPT.mkdir(parents=True, exist_ok=True)
-    for other in _KEPT.parent.iterdir():
-        if other != _KEPT:  # of an engine that is no more
+    KEPT.mkdir(parents=True, exist_ok=True)
+    for other in KEPT.parent.iterdir():
+        if other != KEPT:  # of an engine that is no more
             shutil.rmtree(other, ignore_errors=True)
     draft = kept.with_suffix(f".{os.getpid()}")
     draft.write_bytes(made)

@@ -16,10 +16,11 @@ import pytest
 from pne_sym.backends.ext import ExtBackend
 from pne_sym.model.manipulator import Manipulator
 from tests import models
+from tests.backends.c_library import quick_compiler
 from tests.targets.modules import call, condition, functions, vectors
 
 CACHE = Path(__file__).resolve().parents[2] / ".pytest_cache" / "ext"
-QUICK = {"PNE_SYM_CACHE": str(CACHE), "PNE_SYM_CFLAGS": "-O0"}
+QUICK = {"PNE_SYM_CACHE": str(CACHE), "PNE_SYM_CFLAGS": "-O0", "CC": quick_compiler()}
 
 
 @cache

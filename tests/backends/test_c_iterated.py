@@ -15,10 +15,9 @@ from pne_sym.backends.describe import describe
 from pne_sym.model.manipulator import Manipulator
 from tests import models
 from tests.backends.c_agreement import assert_agree, vectors
-from tests.backends.c_library import INVALID, NOT_CONVERGED, OK, SINGULAR, Array, CLibrary
+from tests.backends.c_library import INVALID, NOT_CONVERGED, OK, QUICK, SINGULAR, Array, CLibrary
 
 STATES = 11  # a lane of 8 states, and a remainder
-QUICK = ("-O0",)
 STRUCTURES = {
     # file: legs; (rows, unknowns) of the closure, closed legs too?, constraints, redundant, extras
     "planar_3rrr": ("planar, 3 RRR", (2, 2), False, 0, False, 3),

@@ -18,10 +18,9 @@ from pne_sym.model.manipulator import Manipulator
 from pne_sym.model.read_effects import read_actuator, read_friction
 from pne_sym.model.values import axis, not_negative, number, rotation, vector
 from tests import models
-from tests.backends.c_library import INVALID, OK, Array, CLibrary
+from tests.backends.c_library import INVALID, OK, QUICK, Array, CLibrary
 from tests.sampling import sampled
 
-QUICK = ("-O0",)
 RUBBING = "planar_3rpr_rubbing"
 PLACES: dict[Rule, tuple[str, str]] = {
     Rule.FREE: ("stewart", "gravity"),

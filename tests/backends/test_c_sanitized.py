@@ -14,9 +14,10 @@ from pne_sym import manipulators
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.c_public import CFunction, c_functions
 from tests import models
-from tests.backends.c_library import find_compiler, run, write_sources
+from tests.backends.c_library import QUICK, find_compiler, quick_compiler, run, write_sources
+from tests.sampling import sampled
 
-FLAGS = ("-std=c99", "-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+FLAGS = ("-std=c99", *QUICK, "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 STATES = 9  # a lane of 8 states, and a remainder
 HEAD = """#include "{name}.h"
 #include <math.h>
@@ -67,7 +68,9 @@ def caller(bundle: Bundle, api: CFunction) -> str:
     return "\n".join([*lines, "}", ""])
 
 
-@pytest.mark.parametrize("which", ["tripod_3rps", "fivebar_redundant", "point_4rrr_redundant"])
+@pytest.mark.parametrize(
+    "which", sampled(["tripod_3rps", "fivebar_redundant", "point_4rrr_redundant"], 2)
+)
 def test_sanitized(which: str, tmp_path: Path) -> None:
     """Constrained, redundantly driven; iterated with extra coordinates and redundant."""
     manipulator = (models.catalogue if which in manipulators.names() else models.drawn)(which)
@@ -83,7 +86,9 @@ def test_sanitized(which: str, tmp_path: Path) -> None:
     ]
     main = tmp_path / "main.c"
     main.write_text("\n".join(text), encoding="utf-8")
-    run(find_compiler("gcc"), *FLAGS, f"-I{tmp_path}", main, source, "-o", program, "-lm")
+    run(
+        find_compiler(quick_compiler()), *FLAGS, f"-I{tmp_path}", main, source, "-o", program, "-lm"
+    )
     printed = run(program).split()
     names = [a.name for a in table for _ in range(2)]
     assert printed[::2] == names

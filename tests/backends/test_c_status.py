@@ -15,6 +15,7 @@ from tests.backends.c_library import (
     INVALID,
     NOT_CONVERGED,
     OK,
+    QUICK,
     SINGULAR,
     UNREACHABLE,
     Array,
@@ -22,7 +23,6 @@ from tests.backends.c_library import (
 )
 
 STATES = 19
-QUICK = ("-O0",)
 
 
 def near_home(manipulator: Manipulator) -> dict[str, Array]:

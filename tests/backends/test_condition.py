@@ -8,12 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pne_sym import manipulators
 from pne_sym.model.manipulator import Manipulator
-from tests.backends.c_library import INVALID, OK, SINGULAR, Array, CLibrary
+from tests.backends.c_library import INVALID, OK, QUICK, SINGULAR, Array, CLibrary
 from tests.models import bundle, catalogue, module, random_spec, state_at
 from tests.oracle.coordinates import displaced, platform_position, platform_rotation
-from tests.sampling import sampled
+from tests.sampling import entries, sampled
 from tests.whole.cases import guess_of
 from tests.whole.test_impossible import pose_of_singular_drives
 
@@ -46,7 +45,7 @@ def moment_rows(model: Any, spec: Manipulator) -> list[int]:
     return [*range(linear, first), *(first + k for k, turns in enumerate(turning) if turns)]
 
 
-@pytest.mark.parametrize("name", sampled(manipulators.names(), 6, keep=["planar_3rpr"]))
+@pytest.mark.parametrize("name", entries(3))
 def test_singular_values_and_codes(name: str, tmp_path: Path) -> None:
     """Those of H with rows scaled; the same numbers and codes in C, one by one and in a batch."""
     spec, model = catalogue(name), module(catalogue(name))
@@ -54,7 +53,7 @@ def test_singular_values_and_codes(name: str, tmp_path: Path) -> None:
     X[1, 0] = np.nan
     X[2] = 1e200
     guess = guess_of(model, q)
-    library = CLibrary(bundle(spec), tmp_path, flags=("-O0",))
+    library = CLibrary(bundle(spec), tmp_path, flags=QUICK)
     for function in ("condition", "condition_constrained")[: 1 + bool(model.NC)]:
         sigma, legs, status = getattr(model, function)(X, **guess)
         assert status[1] == INVALID
@@ -129,13 +128,13 @@ def near_singular(name: str, rng: np.random.Generator, count: int) -> Array:
     return np.asarray(found)
 
 
-@pytest.mark.parametrize("name", ["planar_3rpr", "stewart"])
+@pytest.mark.parametrize("name", sampled(["planar_3rpr", "stewart"], 2))
 def test_error_of_inverse_dynamics(name: str, tmp_path: Path) -> None:
     """Against the same formulas in long double: error <= 50 epsilon sigma_1 / sigma_n / legs."""
     model, count, rng = module(catalogue(name)), 400, np.random.default_rng(2)
     made = bundle(catalogue(name))
-    exact = CLibrary(made, tmp_path, "long double", flags=("-O1",))
-    plain = CLibrary(made, tmp_path, flags=("-O1",))
+    exact = CLibrary(made, tmp_path, "long double", flags=QUICK)
+    plain = CLibrary(made, tmp_path, flags=QUICK)
     X = near_singular(name, rng, count)
     given = [X, *(rng.uniform(-1.0, 1.0, (count, n)) for n in (model.NV, model.NV, model.NW))]
     (want,), status = exact.batch("inverse_dynamics", *given)

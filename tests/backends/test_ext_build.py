@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.backends.c_library import quick_compiler
 from tests.backends.ext_module import placed, run
 
 NAME = "planar_3rpr"
@@ -24,7 +25,7 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     folder = tmp_path / "cache"
     monkeypatch.setenv("PNE_SYM_CACHE", str(folder))
     monkeypatch.setenv("PNE_SYM_CFLAGS", "-O0")
-    monkeypatch.delenv("CC", raising=False)
+    monkeypatch.setenv("CC", quick_compiler())
     return folder
 
 
@@ -118,7 +119,10 @@ def test_a_cache_that_cannot_be_is_refused(cache: Path, used: Path) -> None:
     )
 
 
-def test_without_a_compiler(cache: Path, used: Path, tmp_path: Path) -> None:
+def test_without_a_compiler(
+    cache: Path, used: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("CC")
     message = refused(used, PATH=without_compiler(tmp_path))
     assert message.startswith(f"{NAME}_ext: no C compiler: looked for cc, gcc, clang; name one by")
     message = refused(used, CC="nowhere-cc -m64")
@@ -141,7 +145,7 @@ def test_a_compiler_that_fails_is_quoted_and_leaves_nothing(cache: Path, used: P
     assert "--no-such-option" in message
     assert "failed:" in message
     assert list(cache.iterdir()) == []
-    message = refused(used, PNE_SYM_CFLAGS="-DPLANAR_3RPR_REAL=float")
+    message = refused(used, PNE_SYM_CFLAGS="-O0 -DPLANAR_3RPR_REAL=float")
     assert "the_real_type_must_be_double" in message
 
 

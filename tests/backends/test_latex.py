@@ -38,6 +38,7 @@ from pne_sym.vector import (
 )
 from pne_sym.vector.evaluate import evaluate
 from tests.backends.formulas import Reader
+from tests.sampling import entries
 
 A, B, C = (VectorSymbol(name) for name in "abc")
 T, S = TensorSymbol("T"), TensorSymbol("S", True)
@@ -158,7 +159,7 @@ def test_width_counts_what_is_seen() -> None:
     assert visible_width(r"\frac{abc}{d}") == 3
 
 
-@pytest.fixture(scope="module", params=manipulators.names())
+@pytest.fixture(scope="module", params=entries())
 def manipulator(request: pytest.FixtureRequest) -> Manipulator:
     return manipulators.load(request.param)
 

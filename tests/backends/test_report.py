@@ -33,6 +33,7 @@ from pne_sym.program.ir import Program
 from pne_sym.vector import Dot, DualScalar, DualVector, TensorSymbol, Vector, VectorSymbol
 from pne_sym.vector.evaluate import evaluate
 from tests import models
+from tests.sampling import entries
 
 ROOT = Path(__file__).resolve().parents[2]
 KATEX = ROOT / "tests/tools/katex"
@@ -57,7 +58,7 @@ def document(name: str) -> str:
     return text_of(derived(models.catalogue(name)))
 
 
-@pytest.fixture(params=NAMES)
+@pytest.fixture(params=entries())
 def name(request: pytest.FixtureRequest) -> str:
     return str(request.param)
 

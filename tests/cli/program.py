@@ -9,8 +9,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+from tests.cli import forked
+from tests.cli.forked import STUB
+
 PROGRAM = Path(sys.executable).with_name("pne-gen")
-STUB = Path(__file__).parent / "stub"
 HANG = 3600  # s; ends what hangs, and nothing that is only slow on a busy machine
 
 
@@ -27,10 +29,21 @@ def pne_gen(
     *arguments: str | Path,
     fault: str = "",
     real: bool = False,
+    fresh: bool = False,
     cwd: Path | None = None,
     **variables: str,
 ) -> subprocess.CompletedProcess[str]:
-    """Run the program; return its exit code, output and errors."""
+    """Run the program; return its exit code, output and errors.
+
+    Args:
+        fault: what goes wrong with the stub compiler.
+        real: with the compiler instead of its stub.
+        fresh: in an interpreter of its own, as the installed program is; so it is wherever
+            variables of the environment are given.
+        cwd: the working folder.
+    """
+    if not (fresh or variables):
+        return forked.run(arguments, environment(fault=fault, real=real), cwd)
     return subprocess.run(
         [PROGRAM, *arguments],
         env=environment(fault=fault, real=real, **variables),

@@ -144,7 +144,7 @@ def test_every_command_has_help(word: str) -> None:
 
 def test_version_is_told_at_once() -> None:
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    done = pne_gen("--version", real=True)
+    done = pne_gen("--version", real=True, fresh=True)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     assert done.stdout == f"pne-gen {version('pne-sym')}\n"
     # 0.13 s where it was written; of the processor, so that a busy machine does not count.

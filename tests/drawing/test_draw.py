@@ -25,6 +25,7 @@ from pne_sym.model.manipulator import IDENTITY3, Manipulator
 from pne_sym.model.reader import from_mapping
 from pne_sym.writer import OutputError
 from tests.model import examples
+from tests.sampling import entries
 
 LARGEST = 95_000
 """Bytes; some more than the pictures in docs have, as versions of matplotlib differ."""
@@ -34,7 +35,7 @@ def fills(picture: Picture) -> set[str]:
     return {shape.fill for shape in picture.shapes}
 
 
-@pytest.mark.parametrize("name", manipulators.names())
+@pytest.mark.parametrize("name", entries())
 def test_every_manipulator_of_the_catalogue(name: str, tmp_path: Path) -> None:
     model = manipulators.load(name)
     path = pne_sym.draw(name, tmp_path / f"{name}.svg")

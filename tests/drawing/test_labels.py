@@ -14,6 +14,7 @@ from pne_sym import drawing, manipulators
 from pne_sym.drawing.paper import figure, layout
 from pne_sym.drawing.shapes import Picture
 from tests.drawing.cables import cable_robot
+from tests.sampling import entries
 
 FRAMES = [(4.0, 3.0, 2.6), (6.0, 6.0, 2.0), (2.0, 2.0, 4.0), (8.0, 2.0, 2.0)]
 
@@ -60,7 +61,7 @@ def test_eight_cables(frame: tuple[float, float, float], azimuth: float | None) 
     assert_balloons_on_the_page(picture)
 
 
-@pytest.mark.parametrize("name", manipulators.names())
+@pytest.mark.parametrize("name", entries())
 def test_the_catalogue(name: str) -> None:
     picture = drawing.picture(manipulators.load(name))
     assert_legible(picture)

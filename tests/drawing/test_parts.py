@@ -13,6 +13,7 @@ from pne_sym.drawing.shapes import Label, Picture, Shape, disc, hull, rounded
 from pne_sym.drawing.solids import Paint, ball, box, cylinder, prism
 from pne_sym.drawing.view import view_from
 from pne_sym.model.kinematics import pose_at
+from tests.sampling import entries
 
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 
@@ -52,7 +53,7 @@ def test_joints_are_drawn_by_kind(name: str, drawn: str) -> None:
     assert letters(name) == drawn
 
 
-@pytest.mark.parametrize("name", manipulators.names())
+@pytest.mark.parametrize("name", entries())
 def test_the_last_joint_sits_on_the_platform(name: str) -> None:
     found, model = scene(name), manipulators.load(name)
     pose = pose_at(model.space, model.home.X, model.fixed_centre)

@@ -17,6 +17,7 @@ from pne_sym import drawing, manipulators
 from pne_sym.drawing.paper import figure, rendered
 from pne_sym.drawing.shapes import Picture
 from tests.drawing.render import drawn, largest_difference, pixels
+from tests.sampling import entries
 
 NEAREST = 0.05 + 1e-9
 """Typographic points: numbers are rounded to a tenth."""
@@ -49,7 +50,7 @@ def as_matplotlib_writes_it(name: str) -> bytes:
     return buffer.getvalue()
 
 
-@pytest.mark.parametrize("name", manipulators.names())
+@pytest.mark.parametrize("name", entries())
 def test_every_path_has_the_commands_that_matplotlib_wrote(name: str) -> None:
     written, wanted = (
         paths(svg) for svg in (rendered(picture(name), ".svg"), as_matplotlib_writes_it(name))
@@ -61,7 +62,7 @@ def test_every_path_has_the_commands_that_matplotlib_wrote(name: str) -> None:
             np.testing.assert_allclose(points, others, rtol=0, atol=NEAREST)
 
 
-@pytest.mark.parametrize("name", manipulators.names())
+@pytest.mark.parametrize("name", entries())
 def test_it_looks_like_the_png(name: str, tmp_path: Path) -> None:
     svg = tmp_path / f"{name}.svg"
     svg.write_bytes(rendered(picture(name), ".svg"))

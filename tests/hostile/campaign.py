@@ -44,6 +44,7 @@ class Build:
 
 BUILDS = {
     "fast": Build("gcc", ("-O3", "-march=native", "-fno-math-errno")),
+    "quick": Build("clang", ("-O0",)),
     "float": Build("gcc", ("-O2",), "float"),
     "memory": Build("clang", (*_SANITIZED, "-fsanitize=memory", "-fno-sanitize-recover=all")),
     "thread": Build("clang", (*_SANITIZED, "-fsanitize=thread"), threads=4),

@@ -13,6 +13,7 @@ from tests import models
 from tests.backends.c_library import find_compiler, write_sources
 from tests.hostile.campaign import BUILDS, CODES, Line, compile_engine, run
 from tests.hostile.interface import read_header
+from tests.sampling import sampled
 
 STATES = 20_000
 
@@ -52,13 +53,19 @@ def test_the_header_tells_of_every_function(which: str, tmp_path: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("which", "build"),
-    [
-        ("tripod_3rps", "memory"),
-        ("tripod_3rps", "thread"),
-        ("planar_redundant", "memory"),
-        ("fivebar_redundant", "float"),
-        ("stewart", "fast"),
-    ],
+    sampled(
+        [
+            ("tripod_3rps", "memory"),
+            ("tripod_3rps", "thread"),
+            ("planar_redundant", "memory"),
+            ("planar_3rpr", "memory"),
+            ("planar_mixed", "quick"),
+            ("fivebar_redundant", "float"),
+            ("stewart", "fast"),
+        ],
+        0,
+        keep=[("planar_3rpr", "memory"), ("planar_mixed", "quick")],
+    ),
 )
 def test_hostile_states_break_no_promise(which: str, build: str, tmp_path: Path) -> None:
     source = written(models.bundle(models.catalogue(which)), tmp_path)
@@ -77,16 +84,16 @@ DELIVER = """for (size_t e = 0; e < size; ++e) {
 """
 VERDICT = "    verdict why;\n"
 PLANTED = {
-    "NaN is left out": ("fast", "out[e] = R(NAN);", "out[e] = 0;", "impossible, but not NaN"),
-    "infinite counts as finite": ("fast", "return x - x == 0;", "return x == x;", "not finite"),
+    "NaN is left out": ("quick", "out[e] = R(NAN);", "out[e] = 0;", "impossible, but not NaN"),
+    "infinite counts as finite": ("quick", "return x - x == 0;", "return x == x;", "not finite"),
     "a word too many": (
-        "fast",
+        "quick",
         DELIVER,
         f"{DELIVER}            out[size*w] = 0;\n",
         "writes beyond its output",
     ),
     "failures are not counted": (
-        "fast",
+        "quick",
         "failed += code[k] != OK;",
         "failed += code[k] > 1;",
         "count of failures",

@@ -12,6 +12,7 @@ import pytest
 import pne_sym
 from pne_sym.model.reader import from_text
 from pne_sym.starter import starter_text
+from tests.sampling import sampled
 
 # Words of the generated code's own: functions, classes, fields, sizes, locals, prefixes.
 NAMES = [
@@ -22,7 +23,7 @@ NAMES = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", sampled(NAMES, 4))
 def test_python_and_c(name: str, tmp_path: Path) -> None:
     manipulator = from_text(starter_text(name, "2-RPR", "point"), ".toml", name)
     pne_sym.generate(manipulator, tmp_path / "made_here")

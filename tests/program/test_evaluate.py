@@ -14,7 +14,7 @@ from pne_sym.program.evaluate import Status, evaluate, prepare, value_of
 from pne_sym.program.iteration import close_loops
 from pne_sym.program.linear import PIVOT, least_pivot, solve
 from tests import models
-from tests.backends.c_library import Array, CLibrary
+from tests.backends.c_library import QUICK, Array, CLibrary
 
 STATES = 13
 TOLERANCE = 1e-13
@@ -135,7 +135,7 @@ STATUSES = {
 @pytest.mark.parametrize("name", STATUSES)
 def test_statuses_are_those_of_c(name: str, tmp_path: Path) -> None:
     compiled = models.bundle(models.catalogue(name))
-    library = CLibrary(compiled, tmp_path, flags=("-O0",))
+    library = CLibrary(compiled, tmp_path, flags=QUICK)
     vectors, values, seen = hostile(name), prepared(name), set[int]()
     for function, of_program in compiled.program.functions.items():
         if function not in library.api:

@@ -20,7 +20,7 @@ from pne_sym.program.ir import (
 )
 from pne_sym.program.verify import ProgramError, verify
 from tests.models import bundle, catalogue, parameter_names
-from tests.whole.supported import SAMPLE
+from tests.sampling import SAMPLE
 
 
 def real(name: str) -> Any:

@@ -23,7 +23,7 @@ from pne_sym.model.errors import SpecError
 from pne_sym.model.manipulator import JointKind, Manipulator, Space
 from pne_sym.model.reader import checked
 from pne_sym.pipeline import compile_bundle
-from tests.backends.c_library import CLibrary
+from tests.backends.c_library import QUICK, CLibrary
 from tests.oracle.closure import OracleError
 from tests.oracle.comparison import relative_error
 from tests.oracle.coordinates import (
@@ -306,7 +306,7 @@ _C_FUNCTIONS: dict[str, Callable[[Any, State, Array, dict[str, Array]], Any]] = 
 def _judge_c(bundle: Bundle, module: Any, verdict: Verdict, states: list[State]) -> None:
     """The generated C against the generated NumPy."""
     with tempfile.TemporaryDirectory() as folder:
-        library = CLibrary(bundle, Path(folder), flags=("-O0",))
+        library = CLibrary(bundle, Path(folder), flags=QUICK)
         for state in states:
             tau = np.random.default_rng(1).uniform(-20.0, 20.0, module.NU)
             weights = np.linspace(1.0, 2.0, module.NU)

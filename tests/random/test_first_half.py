@@ -8,7 +8,7 @@ from tests.random.cases import FIRST, check_breadth, judged
 from tests.sampling import sampled
 
 
-@pytest.mark.parametrize("seed", sampled(FIRST, 8))
+@pytest.mark.parametrize("seed", sampled(FIRST, 0, keep=[0, 16]))
 def test_right_or_refused_for_a_reason(seed: int) -> None:
     found = judged(seed)
     assert not found.problem, found

@@ -8,7 +8,7 @@ from tests.random.cases import SECOND, check_breadth, judged
 from tests.sampling import sampled
 
 
-@pytest.mark.parametrize("seed", sampled(SECOND, 8))
+@pytest.mark.parametrize("seed", sampled(SECOND, 0, keep=[63, 67]))
 def test_right_or_refused_for_a_reason(seed: int) -> None:
     found = judged(seed)
     assert not found.problem, found

@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.program import HANG, PROGRAM, pne_gen
+from tests.cli import forked
+from tests.cli.program import HANG, pne_gen
 from tests.cli.test_diff import git, heavier
 from tests.cli.test_generate import own_spec
 from tests.sampling import sampled
@@ -19,7 +20,7 @@ GUIDE = (ROOT / "docs/code-review.md").read_text()
 
 
 def shell(command: str, folder: Path, **variables: str) -> subprocess.CompletedProcess[str]:
-    path = f"{PROGRAM.parent}{os.pathsep}{os.environ['PATH']}"
+    path = f"{forked.program().parent}{os.pathsep}{os.environ['PATH']}"
     identity = {
         f"GIT_{who}_{what}": "test@localhost"
         for who in ("AUTHOR", "COMMITTER")

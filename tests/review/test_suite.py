@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 
 import pytest
 import sympy as sp
@@ -31,6 +32,7 @@ TEXT = manipulators.path(MODEL).read_text(encoding="utf-8")
 Replaced = tuple[tuple[str, str], ...]
 
 
+@cache
 def version(text: str) -> Model:
     return version_of(Source("a robot", "robot", text, ".toml"))
 
@@ -43,6 +45,7 @@ def edited(*changes: tuple[str, str]) -> str:
     return text
 
 
+@cache
 def compared(*changes: tuple[str, str]) -> Comparison:
     return compare(version(TEXT), version(edited(*changes)))
 

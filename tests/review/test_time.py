@@ -5,6 +5,8 @@ from __future__ import annotations
 import resource
 from pathlib import Path
 
+import pytest
+
 from tests.cli.program import pne_gen
 from tests.cli.test_diff import heavier
 from tests.cli.test_generate import own_spec
@@ -13,11 +15,12 @@ from tests.cli.test_generate import own_spec
 def seconds(*arguments: str | Path, code: int) -> float:
     """Of the program and what it starts, on all processors."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    assert pne_gen(*arguments, real=True).returncode == code
+    assert pne_gen(*arguments, real=True, fresh=True).returncode == code
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     return (after.ru_utime + after.ru_stime) - (before.ru_utime + before.ru_stime)
 
 
+@pytest.mark.only_in_all
 def test_two_specifications_and_two_folders(tmp_path: Path) -> None:
     """At most a generation a side and a second; next to nothing for folders that are equal."""
     (tmp_path / "a").mkdir()

@@ -10,7 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.program import HANG, PROGRAM, pne_gen
+from tests.cli import forked
+from tests.cli.program import HANG, pne_gen
 from tests.cli.test_diff import git, heavier
 from tests.cli.test_generate import own_spec
 
@@ -61,7 +62,7 @@ class Runner:
             file = programs / name
             file.write_text(text)
             file.chmod(file.stat().st_mode | stat.S_IXUSR)
-        path = [str(programs), str(PROGRAM.parent), os.environ["PATH"]]
+        path = [str(programs), str(forked.program().parent), os.environ["PATH"]]
         self.variables = {
             "PATH": os.pathsep.join(path), "BASE": "main~0", "NUMBER": "7", "SPECS": "robots",
             "MODELS": "generated", "REPO": "me/robots", "HEAD": "abc123",

@@ -17,6 +17,7 @@ from pne_sym.model.errors import SpecError, SpecNote, SpecWarning
 from pne_sym.model.manipulator import Space
 from pne_sym.model.reader import from_text, read_spec
 from pne_sym.starter import PointsFile, Rings, parse_legs, starter_text, write_starter
+from tests.sampling import sampled
 
 # architecture, space, freedoms, drives, constraints, extra coordinates
 KNOWN: list[tuple[str, str | None, int, int, int, int]] = [
@@ -83,18 +84,21 @@ def test_loads_without_a_warning_and_has_the_known_mobility(
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("legs", "space"),
-    [
-        ("6-UPS", None),
-        ("4-RRRS", None),
-        ("3-PRPS", None),
-        ("3-RPS", None),
-        ("6-SPS", None),
-        ("3-RPR", None),
-        ("2-RPR+1-RRR", None),
-        ("2-PRR", "point"),
-        ("3-RUS", "translational"),
-        ("3-UPS", "spherical"),
-    ],
+    sampled(
+        [
+            ("2-RPR+1-RRR", None),
+            ("6-UPS", None),
+            ("4-RRRS", None),
+            ("3-RPS", None),
+            ("3-UPS", "spherical"),
+            ("3-RPR", None),
+            ("6-SPS", None),
+            ("3-PRPS", None),
+            ("2-PRR", "point"),
+            ("3-RUS", "translational"),
+        ],
+        4,
+    ),
 )
 def test_generates_and_the_model_is_regular_at_home(legs: str, space: str | None) -> None:
     manipulator = from_text(starter_text("my_robot", legs, space), ".toml", "my_robot.toml")

@@ -19,10 +19,9 @@ from tests.oracle.coordinates import (
     rotation_from_quaternion,
     step_between,
 )
-from tests.sampling import sampled
+from tests.sampling import SAMPLE, entries, sampled
 from tests.whole.calls import states
 from tests.whole.cases import case
-from tests.whole.supported import SAMPLE, SUPPORTED
 
 NAMES = sampled(SAMPLE, 4)
 
@@ -101,7 +100,7 @@ def test_dissipation() -> None:
     assert (many > 0.0).all()
 
 
-@pytest.mark.parametrize("name", sampled(SUPPORTED, 5))
+@pytest.mark.parametrize("name", entries(2))
 def test_poses_moved_and_compared(name: str) -> None:
     """`retract` is the displacement by hand, `difference` its inverse."""
     c = case(name, 2)

@@ -13,7 +13,7 @@ import pytest
 from pne_sym.model.full_form import to_full_form
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.model.reader import from_mapping
-from tests.backends.c_library import INVALID, OK, CLibrary
+from tests.backends.c_library import INVALID, OK, QUICK, CLibrary
 from tests.models import bundle, catalogue, module
 from tests.oracle.closure import assemble
 from tests.oracle.comparison import relative_error
@@ -95,7 +95,7 @@ def test_axes_that_keep_their_angles() -> None:
 def test_axes_that_do_not(tmp_path: Path) -> None:
     model = module(tilted())
     p = model.Parameters()
-    library = CLibrary(bundle(tilted()), tmp_path, flags=("-O0",))
+    library = CLibrary(bundle(tilted()), tmp_path, flags=QUICK)
     assert library.status == OK
     assert status(library, p, {}) == OK
     for name in AXES:

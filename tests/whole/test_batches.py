@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tests.sampling import SAMPLE, sampled
 from tests.whole.calls import Outputs, Vectors, call, functions, states
 from tests.whole.cases import Array, Case, case
 
@@ -21,6 +22,7 @@ NAMES = (
     "tripod_3upu",
 )
 """Each space; iterated, constrained, redundant, with extra coordinates, with moments."""
+CASES = sampled(NAMES, 0, keep=(*SAMPLE, "hexapod_6x6r"))
 
 
 def row_of(vectors: Vectors, row: tuple[int, ...]) -> Vectors:
@@ -50,7 +52,7 @@ def broadcast(value: Array, lead: tuple[int, ...], name: str) -> Array:
 
 # Up to eight states are computed one by one, more as arrays.
 @pytest.mark.parametrize("lead", [(1,), (2, 1, 3), (3, 4)])
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", CASES)
 def test_leading_axes(name: str, lead: tuple[int, ...]) -> None:
     c = case(name, 1)
     vectors = states(c, lead)
@@ -58,7 +60,7 @@ def test_leading_axes(name: str, lead: tuple[int, ...]) -> None:
         assert_rows(c, function, call(c, function, vectors), lead, vectors)
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", CASES)
 def test_broadcasting(name: str) -> None:
     """Each argument in turn has leading axes (3, 1), the others (4,); then the others none."""
     c = case(name, 1)
@@ -72,7 +74,7 @@ def test_broadcasting(name: str) -> None:
                 assert_rows(c, function, call(c, function, mixed), lead, mixed)
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", CASES)
 def test_no_states(name: str) -> None:
     c = case(name, 1)
     one = states(c, ())

@@ -22,13 +22,11 @@ from tests.models import catalogue, source, state_at
 from tests.oracle.closure import OracleError, close_legs
 from tests.oracle.coordinates import extra_indices, joint_slices, pose_size
 from tests.oracle.projection import project
-from tests.sampling import sampled
+from tests.sampling import entries
 from tests.whole.cases import Array, Case, assert_right
-from tests.whole.supported import SUPPORTED
 
 ITERATED = ("hexapod_6x6r",)
 """No branches: the closure next to the first guess."""
-TURNABLE = [name for name in SUPPORTED if name not in ITERATED]
 EXTRA = {"hybrid_3rrrs_redundant": -1.0}
 """Entry -> extra coordinate at home where its leg closes on the other branches too."""
 TRIES = 40
@@ -87,7 +85,7 @@ def _count_of_branches(spec: Manipulator, number: int) -> int:
     return sum(leg_type == name for leg_type, _ in derivation.parameters.branches.values())
 
 
-@pytest.mark.parametrize("name", sampled(TURNABLE, 5))
+@pytest.mark.parametrize("name", entries(2, without=ITERATED))
 def test_turned_legs(name: str) -> None:
     spec = turned(name)
     before, after = signs_of(catalogue(name)), signs_of(spec)

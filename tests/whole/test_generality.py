@@ -87,8 +87,16 @@ REFUSED: dict[str, tuple[str, list[str], str]] = {
 }
 """Space and platform joint -> legs and the mechanical reason; joints marked + lose the mark."""
 
+RUN = (
+    "point R",
+    "planar S",
+    "translational R, freedoms left out",
+    "spherical rigid, freedoms left out",
+)
+"""In every run: of each space a structure that is derived quickly."""
 
-@pytest.mark.parametrize("name", sampled(ACCEPTED, 8))
+
+@pytest.mark.parametrize("name", sampled(ACCEPTED, 0, keep=RUN))
 def test_right(name: str) -> None:
     rng = np.random.default_rng(7)
     space, legs = ACCEPTED[name]

@@ -9,8 +9,8 @@ import pytest
 
 from tests.models import catalogue, module
 from tests.oracle.coordinates import displaced, platform_rotation
+from tests.sampling import entries
 from tests.whole.cases import Array
-from tests.whole.supported import SUPPORTED
 
 QUATERNION = ("spherical_3ups", "stewart", "stewart_sps", "tripod_3rps")
 PLANAR = ("planar_3rpr", "planar_redundant", "fivebar_offset")
@@ -31,7 +31,7 @@ def place(model: Any) -> Array:
     return np.array([0.1, -0.2, 0.7])[: 3 if model.NW == 6 else 0]
 
 
-@pytest.mark.parametrize("name", SUPPORTED)
+@pytest.mark.parametrize("name", entries())
 def test_where_the_space_has_rotation(name: str) -> None:
     model, turns = (
         module(catalogue(name)),

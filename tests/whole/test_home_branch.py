@@ -14,7 +14,7 @@ from pne_sym.model.manipulator import Manipulator
 from pne_sym.program.evaluate import prepare
 from pne_sym.program.iteration import close_loops, gap_and_jacobian, on_home_s_branch
 from tests import models
-from tests.backends.c_library import NOT_CONVERGED, OK, Array, CLibrary
+from tests.backends.c_library import NOT_CONVERGED, OK, QUICK, Array, CLibrary
 from tests.oracle.coordinates import joint_slices
 
 ROWS = {
@@ -177,7 +177,7 @@ def _elbow_over(leg, q: Array, unknown: list[int]) -> Array:  # type: ignore[no-
 def test_c_refuses_the_same(name: str, real: str, tmp_path: Path) -> None:
     """Single and batch, in both precisions: the statuses are those of the NumPy module."""
     spec = model_of(name)
-    m, library = models.module(spec), CLibrary(models.bundle(spec), tmp_path, real, flags=("-O1",))
+    m, library = models.module(spec), CLibrary(models.bundle(spec), tmp_path, real, flags=QUICK)
     path = path_from_home(name, 1, 0.05)
     rng = np.random.default_rng(7)
     at = rng.integers(0, PATH, STATES)

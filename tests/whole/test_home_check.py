@@ -26,7 +26,7 @@ from pne_sym.model.reader import from_text
 from pne_sym.program.evaluate import Array
 from tests import models
 from tests.cli.program import pne_gen
-from tests.whole.supported import SUPPORTED
+from tests.sampling import entries
 
 
 def stretched(angle: float) -> Manipulator:
@@ -143,6 +143,7 @@ def tricept() -> Manipulator:
     return from_text(text, ".toml", "tricept")
 
 
+@pytest.mark.only_in_all
 def test_a_central_leg_at_both_origins() -> None:
     """Never a model that is NaN at home: it is refused, or finite there."""
     try:
@@ -185,7 +186,7 @@ def test_ordinary_homes_are_no_matter() -> None:
     assert warned(models.bundle(short(0.3))) == []
 
 
-@pytest.mark.parametrize("name", SUPPORTED)
+@pytest.mark.parametrize("name", entries())
 def test_the_catalogue_has_no_faults(name: str) -> None:
     assert warned(models.bundle(models.catalogue(name))) == []
 

@@ -15,7 +15,7 @@ from tests.models import catalogue, module
 from tests.oracle.coordinates import displaced, platform_position, platform_rotation
 from tests.whole.calls import Outputs, Vectors, call, functions, states
 from tests.whole.cases import Array, Case, case
-from tests.whole.test_batches import NAMES
+from tests.whole.test_batches import CASES
 
 FEW, MANY = 3, 12  # computed one by one, and as arrays
 OF_THE_LEGS = (
@@ -59,7 +59,7 @@ def assert_only(before: Outputs, after: Outputs, row: int, message: str) -> None
 
 
 @pytest.mark.parametrize("count", [FEW, MANY])
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", CASES)
 def test_input_that_is_not_finite(name: str, count: int) -> None:
     c = case(name, 1)
     vectors = states(c, (count,))
@@ -209,7 +209,7 @@ def _all(result: Any) -> Array:
     return np.concatenate(result if isinstance(result, tuple) else (result,), axis=None)
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", CASES)
 def test_wrong_shapes_are_named(name: str) -> None:
     """The message tells the argument, what is expected and what was given."""
     c = case(name, 1)

@@ -11,9 +11,8 @@ from tests.models import catalogue, drawn, module, state_at
 from tests.oracle.comparison import relative_error
 from tests.oracle.coordinates import actuated_indices, displaced, step_between
 from tests.oracle.specs import randomise
-from tests.sampling import sampled
+from tests.sampling import entries
 from tests.whole.cases import Array, Case, case, own
-from tests.whole.supported import SUPPORTED
 
 STEP = 1e-5
 CONSTRAINED = ("fivebar_offset", "tripod_3prs", "tripod_3rps", "tripod_3upu")
@@ -33,7 +32,7 @@ def rate_of(function: Any, c: Case) -> Array:
     return np.asarray((ahead - behind) / (2 * STEP))
 
 
-@pytest.mark.parametrize("name", SUPPORTED)
+@pytest.mark.parametrize("name", entries())
 def test_joint_rates_and_accelerations_are_derivatives(name: str) -> None:
     c = case(name, 1)
     m, p, s = c.model, c.p, c.state
@@ -88,7 +87,7 @@ def test_hk_and_bias_are_derivatives_of_the_constraints(name: str) -> None:
     assert relative_error(Hk.T @ V, rate) < 1e-7
 
 
-@pytest.mark.parametrize("name", sampled(SUPPORTED, 2))
+@pytest.mark.parametrize("name", entries())
 def test_forward_kinematics_undoes_inverse_kinematics(name: str) -> None:
     c = case(name, 1)
     q = c.state.q[actuated_indices(c.spec)]
@@ -109,6 +108,7 @@ def test_a_turn_of_a_screw_is_a_displacement() -> None:
     assert np.abs(again - q - 2 * np.pi).max() < 1e-8
 
 
+@pytest.mark.only_in_all
 def test_the_displacement_of_an_iterated_screw_has_no_bounds() -> None:
     """Joint axes tilted, so that displacements are iterated; screws far beyond half a turn."""
     rng = np.random.default_rng(5)

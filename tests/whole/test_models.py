@@ -22,8 +22,8 @@ from tests.oracle.comparison import relative_error
 from tests.oracle.coordinates import extra_indices, joint_slices
 from tests.oracle.pinocchio_model import PinocchioModel
 from tests.oracle.specs import State, randomise
+from tests.sampling import entries
 from tests.whole.cases import TOLERANCE, Case, answers, assert_right, at, case, own
-from tests.whole.supported import SUPPORTED
 
 REFERENCE_TOLERANCE = 1e-11
 SEEDS = (1,)
@@ -55,18 +55,18 @@ GENERAL = ("fivebar_offset", "hexapod_6uhs", "planar_mixed", "tripod_3prs")
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-@pytest.mark.parametrize("name", SUPPORTED)
+@pytest.mark.parametrize("name", entries())
 def test_random_geometry_through_live_parameters(name: str, seed: int) -> None:
     assert_right(case(name, seed))
 
 
-@pytest.mark.parametrize("name", SUPPORTED)
+@pytest.mark.parametrize("name", entries())
 def test_own_numbers(name: str) -> None:
     spec = catalogue(name)
     assert_right(own(spec, state_at(spec, 4)))
 
 
-@pytest.mark.parametrize("name", SUPPORTED)
+@pytest.mark.parametrize("name", entries())
 def test_pinocchio(name: str) -> None:
     """A second, independent engine: the tree of bodies with loop closures."""
     c = case(name, 1)
@@ -109,7 +109,7 @@ def test_every_reference_file_is_used() -> None:
     assert sorted(REFERENCES) == sorted(path.stem for path in DATA.glob("*.json"))
 
 
-@pytest.mark.parametrize("name", [name for name in SUPPORTED if name not in LEGS_ALL_DIFFER])
+@pytest.mark.parametrize("name", entries(2, without=LEGS_ALL_DIFFER))
 def test_legs_in_another_order(name: str) -> None:
     """The data of legs of one type and branch, permuted: everything moves with its leg."""
     c = case(name, 1)

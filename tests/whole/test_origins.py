@@ -21,10 +21,9 @@ from tests.oracle.randomisation import vector3
 from tests.oracle.specs import State, random_state
 from tests.random.drawing import draw
 from tests.random.judging import judge
-from tests.sampling import sampled
+from tests.sampling import entries, sampled
 from tests.whole.cases import guess_of
 from tests.whole.rewriting import Rewriting, drawn_shifts
-from tests.whole.supported import SUPPORTED
 
 TOLERANCE = 1e-10
 EXACT = 1e-11
@@ -63,7 +62,7 @@ def _off(leg: Leg, residue: float) -> Leg:
 CENTRAL = [*(("single_up", x) for x in (0.0, 1e-6, 1e-7, 1e-12)), ("tricept", 1e-7)]
 
 
-@pytest.mark.parametrize(("name", "residue"), sampled(CENTRAL, 9, keep=[("single_up", 1e-7)]))
+@pytest.mark.parametrize(("name", "residue"), sampled(CENTRAL, 0, keep=[("single_up", 1e-7)]))
 def test_a_central_leg_at_the_origins(name: str, residue: float) -> None:
     """Right, not NaN and not nearly right."""
     spec = single_up() if name == "single_up" else catalogue(name)
@@ -75,7 +74,7 @@ def test_a_central_leg_at_the_origins(name: str, residue: float) -> None:
     assert {what: e for what, e in verdict.errors.items() if not e < EXACT} == {}
 
 
-@pytest.mark.parametrize("name", ["tricept", "quadrupod"])
+@pytest.mark.parametrize("name", sampled(["tricept", "quadrupod"], 2))
 def test_reactions_and_lambda_of_a_central_leg(name: str) -> None:
     """What the constraints do, and forces in the drives, by the independent projection."""
     spec = catalogue(name)
@@ -150,7 +149,7 @@ def _holds_by_moments(spec: Manipulator) -> bool:
     return transmits and not planar
 
 
-@pytest.mark.parametrize("name", sampled(SUPPORTED, 8, keep=["tricept"]))
+@pytest.mark.parametrize("name", entries(4))
 def test_entries_told_from_elsewhere(name: str) -> None:
     spec = catalogue(name)
     s = state_at(spec, 4)

@@ -8,15 +8,15 @@ import pytest
 from tests.models import catalogue, module
 from tests.oracle.comparison import relative_error
 from tests.oracle.coordinates import actuated_indices, displaced
+from tests.sampling import entries
 from tests.whole.cases import Array, case
-from tests.whole.supported import SUPPORTED
 
 STEP = 2e-6
 FREE = ("delta", "fivebar_offset", "planar_redundant", "spherical_3ups", "stewart", "tripod_3ups")
 """One of each space, constrained and with an extra coordinate among them."""
 
 
-@pytest.mark.parametrize("name", SUPPORTED)
+@pytest.mark.parametrize("name", entries())
 def test_power_balance(name: str) -> None:
     """d/dt (kinetic + potential) = tau . qd of the drives + wrench . V; lambda does no work."""
     c = case(name, 2)
@@ -34,7 +34,7 @@ def test_power_balance(name: str) -> None:
     assert abs(power.sum() - rates.sum()) < 1e-7 * np.abs([*power, *rates]).max()
 
 
-@pytest.mark.parametrize("name", SUPPORTED)
+@pytest.mark.parametrize("name", entries())
 def test_inverse_dynamics_undoes_forward_dynamics(name: str) -> None:
     """Forces drawn at random: what H and Hk make of them is found again."""
     c = case(name, 2)

@@ -36,9 +36,8 @@ EXPRESSIONS = {
     "zeros(size({1}, 2), size({1}, 2), n)))",
     "singular_values": "{f}decomposed({0})",
     "impossible": "NaN({n}, n)",
-    "split": "{f}split({0}, {n})",
-    "resolve": "{f}resolve({0}, {n})",
-    "null_basis": "{f}null_basis({0}, {n})",
+    "split": "deal({0}(1:{n}, :, :), {0}({n} + 1:end, :, :))",
+    **{name: f"{{f}}{name}({{0}}, {{n}})" for name in ("resolve", "null_basis")},
 }
 """Operations that are more than a call of a function in templates/octave."""
 

@@ -30,7 +30,6 @@ class XpBackend:
             "program": program,
             "prepare": code.prepared(),
             "functions": [(f, code.body(f)) for f in program.functions.values()],
-            "stored": code.stored,
             "actuated": tuple(map(c.joints.index, c.actuators)),
             "steps": [(f, steps.lines(f)) for f in public],
             "exported": {f.name: _public(f) for f in program.public if f.is_exported},

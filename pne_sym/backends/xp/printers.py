@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import Any
 
 import sympy as sp
@@ -11,9 +10,7 @@ from pne_sym.backends.python_text import PythonText
 from pne_sym.backends.scalar import Dialect, ScalarPrinter
 from pne_sym.backends.steps import StepText
 from pne_sym.backends.straight import Forms
-from pne_sym.program.ir import Function
 from pne_sym.program.operations import TINY
-from pne_sym.program.slices import columns, flat_places
 
 _NAMES = {"sqrt": "s.sqrt", "nonzero": "s.nonzero", "atan2": "s.atan2"}
 _NAMES |= {"sin": "xp.sin", "cos": "xp.cos", "Abs": "abs", "Min": "xp.minimum"}
@@ -38,6 +35,8 @@ class Code(PythonText):
             "singular": "{size} > {tolerance} * ({scale})",
         },
         tolerance={1: "s.tolerance", 2: "s.tolerance * s.tolerance"},
+        store='stored["{array}"].append(({places}, {value}))',
+        leg_store='stored["{array}"].append(({places}, {value}))',
     )
 
     def of(self, expr: Any) -> str:
@@ -46,14 +45,6 @@ class Code(PythonText):
             lambda e: e.is_Pow and e.exp.is_negative, lambda e: 1 / _nonzero(e.base**-e.exp)
         )
         return super().of(guarded)
-
-    def stored(self, function: Function, array: str) -> Iterable[str]:
-        """Flat places in an output array with the values that the blocks store there."""
-        width = columns(self.bundle.program.shapes[array])
-        for block in function.blocks:
-            legs = self.bundle.leg_counts.get(block.leg_type, 1)
-            for store in (s for s in block.stores if s.array == array):
-                yield f"({flat_places(store, width, legs)}, {self.of(store.value)})"
 
 
 class Steps(StepText):
