@@ -99,7 +99,7 @@ Examples:
   pne-gen check stewart --out generated/   is what stands there up to date?
   pne-gen list                             what the catalogue has
   pne-gen draw stewart --out stewart.svg   a picture of it; --pose, --path
-  pne-gen explain stewart ups-K5           an equation: law, uses, users, code
+  pne-gen explain stewart ups-root_1       an equation: law, uses, users, code
   pne-gen diff HEAD:my_robot.toml my_robot.toml   what a change means
 
 \b

@@ -18,6 +18,7 @@ from pne_sym.derivation.equation import (
     ReciprocalBasis,
     Role,
     Trouble,
+    full_name,
     names_in,
 )
 from pne_sym.derivation.parameters import AxisRelation, ParameterField, ParameterTable, Rule
@@ -44,5 +45,6 @@ __all__ = [
     "Role",
     "Rule",
     "Trouble",
+    "full_name",
     "names_in",
 ]

@@ -89,7 +89,7 @@ nu_#       | \nu_{#}                  | rad/s^2 | RATE | Sec. 2.2, joint table
     bias of the angular acceleration along moment direction #
 alpha_#    | \boldsymbol\alpha_{#} ; \boldsymbol\Omega_{#} | rad/s^2 | RATE
     angular acceleration of link #
-a_o#       | \mathbf a_{o#} ; \mathbf V_{#} | m/s^2   | RATE
+a_o_#      | \mathbf a_{o#} ; \mathbf V_{#} | m/s^2   | RATE
     acceleration of the origin of joint #
 w_#        | \mathbf w_{#}            |         | RECIPROCITY RECIPROCAL | Sec. 2.3
     reciprocal vector %
@@ -626,7 +626,7 @@ class MotionWriter:
                 motion.origin_acceleration[j] = rhs
                 continue
             motion.origin_acceleration[j] = self.eq.collected(
-                "a_o#",
+                "a_o_#",
                 rhs,
                 j,
                 body=g.frame("axes", previous),
