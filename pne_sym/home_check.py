@@ -201,7 +201,9 @@ class _Model:
             return ""
         info = next(t for t in self.bundle.derivation.leg_types if t.name == leg_type)
         failed = np.broadcast_to(failed, len(info.indices))
-        return f"legs[{info.indices[int(np.flatnonzero(failed)[0])]}]: "
+        index = info.indices[int(np.flatnonzero(failed)[0])]
+        name = self.bundle.manipulator.legs[index].name
+        return f"legs[{index}]{f' ({name})' if name else ''}: "
 
     def _equation(self, id_: str) -> str:
         title = self.titles.get(id_, "")

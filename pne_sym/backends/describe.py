@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.derivation import Actuation, Coordinates, Derivation, ParameterField, Rule
+from pne_sym.model.manipulator import Manipulator
 
 
 @dataclass(frozen=True)
@@ -137,7 +138,7 @@ def safe_text(text: str) -> str:
 def describe(bundle: Bundle) -> Described:
     """Facts about a compiled manipulator."""
     c = bundle.coordinates
-    extra = tuple(f"leg{i + 1}_joint{j + 1}" for i, j in c.extras)
+    extra = c.names_of(c.extras)
     return Described(
         bundle.name,
         safe_text(bundle.manipulator.title),
@@ -146,11 +147,17 @@ def describe(bundle: Bundle) -> Described:
         c,
         ", ".join((*c.pose, *extra)),
         ", ".join((*c.rates, *(f"{e} rate" for e in extra))),
-        ", ".join(f"leg {i + 1} joint {j + 1}" for i, j in c.actuators),
+        ", ".join(_in_words(bundle.manipulator, i, j) for i, j in c.actuators),
         ", ".join(c.wrench),
         len(bundle.manipulator.legs),
         not all(t.is_closed for t in bundle.derivation.leg_types),
     )
+
+
+def _in_words(manipulator: Manipulator, leg: int, joint: int) -> str:
+    """A joint by the names of leg and joint, or else their numbers."""
+    of = manipulator.legs[leg]
+    return f"{of.name or f'leg {leg + 1}'} {of.joints[joint].name or f'joint {joint + 1}'}"
 
 
 def equation_titles(derivation: Derivation) -> dict[str, str]:

@@ -100,7 +100,7 @@ Examples:
   pne-gen list                             what the catalogue has
   pne-gen home my_robot.toml               closures of the legs at home, all of them
   pne-gen draw stewart --out stewart.svg   a picture of it; --pose, --path
-  pne-gen explain stewart ups-K5           an equation: law, uses, users, code
+  pne-gen explain stewart ups-root_1       an equation: law, uses, users, code
   pne-gen diff HEAD:my_robot.toml my_robot.toml   what a change means
 
 \b

@@ -26,7 +26,7 @@ def explain(
         typer.Argument(
             metavar="EQUATION",
             show_default=False,
-            help="Its id, such as ups-K5, or the name it defines. Default: list all.",
+            help="Its id, such as ups-root_1, or the name it defines. Default: list all.",
         ),
     ] = None,
     stage: Annotated[

@@ -18,6 +18,7 @@ from pne_sym.derivation.equation import (
     ReciprocalBasis,
     Role,
     Trouble,
+    full_name,
     names_in,
 )
 from pne_sym.derivation.frames import BodyAxes, BodyFrame, rotations_by_place
@@ -47,6 +48,7 @@ __all__ = [
     "Role",
     "Rule",
     "Trouble",
+    "full_name",
     "names_in",
     "rotations_by_place",
 ]

@@ -138,10 +138,9 @@ class Book:
                 remainder_of=remainder_of,
             )
         )
-        prefix, _, _, _, equations = self._chapters[-1]
-        equations.append(
+        self._chapters[-1][-1].append(
             Equation(
-                id=f"{prefix}{len(equations) + 1}",
+                id=self._id(name),
                 title=title,
                 lhs=symbol,
                 rhs=rhs,
@@ -163,6 +162,16 @@ class Book:
         symbol = self.define(name, number, latex, title, law, parameter=True)
         self.notation[name] = replace(self.notation[name], unit=unit)
         return symbol
+
+    def _id(self, name: str) -> str:
+        """What an equation is cited by: the name that it defines, ups-rho2_1 for ups_rho2_1.
+
+        The hyphen stands behind the name of the leg type, so that nothing depends on what
+        else there is.
+        """
+        chapters = (leg_type for _, _, leg_type, _, _ in self._chapters if leg_type)
+        owner = max((t for t in chapters if name.startswith(f"{t}_")), key=len, default="")
+        return f"{owner}-{name[len(owner) + 1 :]}" if owner else name
 
     @property
     def _units(self) -> Dimensions:
@@ -267,10 +276,9 @@ class Book:
         left_out = {e.name for e in self.all_equations()} - needed
         chapters = []
         for id_, title, leg_type, text, equations in self._chapters:
-            kept = [e for e in equations if e.name in needed]
-            numbered = tuple(replace(e, id=f"{id_}{k}") for k, e in enumerate(kept, 1))
-            if numbered:
-                chapters.append(Chapter(id_, title, leg_type, text, numbered))
+            kept = tuple(e for e in equations if e.name in needed)
+            if kept:
+                chapters.append(Chapter(id_, title, leg_type, text, kept))
         return Derivation(
             tuple(chapters),
             dict(self.notation),

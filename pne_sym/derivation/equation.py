@@ -8,7 +8,7 @@ Nothing is expanded: every right-hand side is short.
 from __future__ import annotations
 
 import enum
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -178,7 +178,7 @@ class Equation:
     """One named equation, lhs = rhs.
 
     Attributes:
-        id: stable identifier, printed in report and code.
+        id: cited in report and code: the name that it defines, ups-q_3 of leg type ups.
         title: what the equation says, in words.
         lhs: the symbol that the equation defines.
         rhs: vector, tensor or scalar expression in earlier names.
@@ -329,6 +329,7 @@ class Coordinates:
         home: X and q at home.
         actuation: what actuators and constraints determine, by generic rank.
         transmits_moments: some leg transmits a moment: leg reactions have six entries.
+        names: of every entry of q, the leg's and the joint's: leg2_joint3 where they have none.
     """
 
     space: str
@@ -346,6 +347,7 @@ class Coordinates:
     actuation: Actuation
     transmits_moments: bool = False
     constraint_units: tuple[str, ...] = ()
+    names: tuple[str, ...] = ()
 
     @property
     def position(self) -> int:
@@ -359,8 +361,13 @@ class Coordinates:
 
     @property
     def actuator_names(self) -> tuple[str, ...]:
-        """Of the entries of tau: leg and joint, counted from 1."""
-        return tuple(f"leg{leg + 1}_joint{joint + 1}" for leg, joint in self.actuators)
+        """Of the entries of tau."""
+        return self.names_of(self.actuators)
+
+    def names_of(self, joints: Iterable[tuple[int, int]]) -> tuple[str, ...]:
+        """Names of joints, by leg and joint."""
+        known = dict(zip(self.joints, self.names, strict=True))
+        return tuple(known[joint] for joint in joints)
 
     @property
     def sizes(self) -> dict[str, int]:
@@ -471,6 +478,20 @@ def names_in(expr: Any) -> set[str]:
     for arg in getattr(expr, "args", ()):
         found |= names_in(arg)
     return found
+
+
+def full_name(derivation: Derivation, name: str) -> str:
+    """A quantity's name with its leg type, where the type is left out or stands behind it.
+
+    q_2 and q_2_rpr are rpr_q_2; what is no such quantity, or one of several types, is returned
+    as it is.
+    """
+    if name in derivation.notation:
+        return name
+    types = [info.name for info in derivation.leg_types]
+    found = {f"{of}_{text}" for of in types for text in (name, name.removesuffix(f"_{of}"))}
+    found &= derivation.notation.keys()
+    return found.pop() if len(found) == 1 else name
 
 
 def has_leg_sum(expr: Any) -> bool:

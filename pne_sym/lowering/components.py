@@ -35,6 +35,7 @@ class Lowering:
         self.d = derivation
         self.b = builder
         self.definition: dict[str, Equation] = {e.name: e for e in derivation.equations()}
+        self._place = {name: k for k, name in enumerate(self.definition)}
         self.given = {g.symbol: g for g in derivation.givens}
         self.trials = Trials(builder)
         self.home: dict[str, str] = {}
@@ -84,8 +85,8 @@ class Lowering:
             self.b.equation = before
 
     def _ensure_new(self, equation: Equation) -> None:
-        needed = sorted(names_in(equation.rhs))
-        optional = sorted(set().union(*(names_in(f) for f in equation.forms), set()) - set(needed))
+        needed = self._in_order(names_in(equation.rhs))
+        optional = self._in_order(set().union(*map(names_in, equation.forms)) - set(needed))
         for other in needed + optional:
             self.ensure(other)
         for other in needed:
@@ -99,6 +100,10 @@ class Lowering:
                 self.scalar(condition.scale),
                 condition.power,
             )
+
+    def _in_order(self, names: set[str]) -> list[str]:
+        """Names in the order in which they are defined, whatever they are."""
+        return sorted(names, key=lambda name: (self._place.get(name, -1), name))
 
     def _keep(self, name: str) -> None:
         if name in self._scalars:

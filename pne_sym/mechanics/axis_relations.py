@@ -29,7 +29,7 @@ def axis_relations(leg_type: LegType) -> Iterator[AxisRelation]:
 def _axes(leg_type: LegType) -> Iterator[tuple[str, Array]]:
     """Name of the field and directions (legs, 3) of every axis of the chain."""
     for j in range(len(leg_type.model.joints)):
-        name = f"{leg_type.name}_joint{j + 1}_axis"
+        name = f"{leg_type.name}_{leg_type.part('joint', j + 1)}_axis"
         yield name, leg_type.over_legs(lambda leg, j=j: leg.joints[j].axis)
     if leg_type.model.platform_joint.axis_link is not None:
         name = f"{leg_type.name}_platform_joint_axis_link"

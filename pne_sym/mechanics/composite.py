@@ -180,7 +180,7 @@ class CompositeWriter:
         moment = body.inertia @ spin + Cross(body.first_moment, slide)
         frame = g.frame("axes", g.group[k])
         force = self._named(
-            f"P_c{k}",
+            f"P_c_{k}",
             force,
             rf"\mathbf P_{{{k}}}",
             f"force that accelerates joint {k}, per unit",
@@ -190,7 +190,7 @@ class CompositeWriter:
         if not g.group[k]:
             return force, ZeroVector
         return force, self._named(
-            f"L_c{k}",
+            f"L_c_{k}",
             moment,
             rf"\mathbf L_{{{k}}}",
             f"moment about joint {g.group[k]} that accelerates joint {k}, per unit",
@@ -204,7 +204,7 @@ class CompositeWriter:
             return ZeroVector
         total = vector_sum((moment, Cross(self.positions.spans[group], force)))
         return self._named(
-            f"L_c{k}_{group}",
+            f"L_c_{k}_{group}",
             total,
             rf"\mathbf L_{{{k},{group}}}",
             f"moment about joint {group} that accelerates joint {k}, per unit",

@@ -59,8 +59,7 @@ def derive(manipulator: Manipulator) -> Derivation:
         check_scope(manipulator, leg_type, space)
     check_solvable(manipulator)
     for leg_type in types:
-        suffix = "" if len(types) == 1 else f"_{leg_type.name}"
-        legs.append(_derive_leg(book, manipulator, space, platform, leg_type, suffix))
+        legs.append(_derive_leg(book, manipulator, space, platform, leg_type))
     writer = PlatformWriter(book, space, platform, [leg for leg, _ in legs])
     writer.lump()
     writer.equilibrium()
@@ -103,6 +102,10 @@ def _coordinates(manipulator: Manipulator, space: TaskSpace, legs: list[Leg]) ->
         actuation=actuation(manipulator),
         transmits_moments=any(leg.motion.n for leg in legs),
         constraint_units=tuple(unit for *_, unit in constraints),
+        names=tuple(
+            f"{manipulator.legs[i].name or f'leg{i + 1}'}_{joint.name or f'joint{j + 1}'}"
+            for i, j, joint in joints
+        ),
     )
 
 
@@ -112,11 +115,10 @@ def _derive_leg(
     space: TaskSpace,
     platform: PlatformMotion,
     leg_type: LegType,
-    suffix: str,
 ) -> tuple[Leg, MotionWriter]:
     prefix, title = leg_type.name, leg_type.architecture
     book.chapter(f"{prefix}-G", f"Geometry and inertia of a {title} leg", "", prefix)
-    g = build_geometry(book, leg_type, suffix, space.planar)
+    g = build_geometry(book, leg_type, space.planar)
     g = with_size(book, g, home_lengths(manipulator, leg_type))
     bodies = introduce_bodies(book, g, space.planar)
     carried = any(body.at_tip for body in bodies)

@@ -94,7 +94,7 @@ class _Writer:
         unit = unit.format(effort=kind.effort_unit, q=kind.unit)
         (symbol,) = self.book.parameters.add(
             ParameterField(
-                f"{legs.name}_joint{j}_{name}",
+                f"{legs.name}_{legs.part('joint', j)}_{name}",
                 legs.name,
                 (),
                 unit,

@@ -200,7 +200,7 @@ def _link_field(
     legs, (shape, unit, meaning) = g.leg_type, _LINK_FIELDS[field_name]
     return book.parameters.add(
         ParameterField(
-            f"{legs.name}_link{j}_{field_name}",
+            f"{legs.name}_{legs.part('link', j)}_{field_name}",
             legs.name,
             shape,
             unit,
@@ -332,7 +332,7 @@ class DynamicsWriter:
             )
         second = self.book.define(
             g.name(f"Sigma_{group}"),
-            self._half_trace(J) * Identity - J,
+            self._half_trace(J, group) * Identity - J,
             rf"\boldsymbol\Sigma_{{{group}}}",
             f"second moment of mass of the links that turn with link {group}",
             Law.LUMPING,
@@ -386,11 +386,11 @@ class DynamicsWriter:
             return None
         return plain, self.rest(plain)
 
-    def _half_trace(self, J: Any) -> Any:
+    def _half_trace(self, J: Any, group: int) -> Any:
         """Half the trace of the group's inertia."""
         axes = []
         for k in range(3):
-            name = self.g.name(f"unit{k}_{J.name}")
+            name = self.g.name(f"unit{k}_{group}")
             symbol = VectorSymbol(name)
             components = [sp.Integer(int(i == k)) for i in range(3)]
             frame = self.book.notation[J.name].body or "base"
@@ -408,7 +408,7 @@ class DynamicsWriter:
             )
             axes.append(symbol)
         return self.book.define(
-            self.g.name(f"trace_{J.name}"),
+            self.g.name(f"trace_J_{group}"),
             sp.Add(*(Dot(a, J @ a) for a in axes)) / 2,
             self.book.notation[J.name].latex.replace(r"\mathbf J", "j"),
             "half the trace of that inertia tensor",

@@ -11,6 +11,7 @@ offset) that is not parallel to z.  A turn by the joint's angle leads from the
 from __future__ import annotations
 
 import itertools
+import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -32,6 +33,7 @@ from pne_sym.vector.nodes import scale
 
 Array = NDArray[np.float64]
 _E = np.eye(3)
+_NUMBER = re.compile(r"(?<=_)\d+(?=_|$)")
 
 
 _TERMS = glossary(r"""
@@ -106,7 +108,6 @@ class LegGeometry:
 
     Attributes:
         leg_type: the leg type.
-        suffix: appended to names where several leg types need telling apart.
         e: axis vectors by joint number 1..m.
         offset: offset vectors a_1..a_{m+1} by joint number (m+1: the tip).
         group: group of link j by joint number (link 0: the base).
@@ -134,7 +135,6 @@ class LegGeometry:
     """
 
     leg_type: LegType
-    suffix: str
     e: dict[int, VectorSymbol] = field(default_factory=dict)
     offset: dict[int, Vector] = field(default_factory=dict)
     group: dict[int, int] = field(default_factory=dict)
@@ -163,8 +163,13 @@ class LegGeometry:
         return len(self.leg_type.model.joints)
 
     def name(self, stem: str) -> str:
-        """The stem, told apart from the same stem of other leg types."""
-        return stem + self.suffix
+        """The stem under the leg type's name, whatever other types there are.
+
+        A number after an underscore is that of a joint: the joint's own name stands in its
+        place where it has one.
+        """
+        named = _NUMBER.sub(lambda number: self.leg_type.label(int(number[0])), stem)
+        return f"{self.leg_type.name}_{named}"
 
     def kind(self, j: int) -> JointKind:
         """Kind of joint j."""
@@ -211,7 +216,7 @@ class LegGeometry:
 
     def frame(self, kind: str, group: int) -> str:
         """Frame name: kind is "spec", "turn" or "axes"."""
-        return f"{self.leg_type.name}.{kind}{group}"
+        return f"{self.leg_type.name}.{self.leg_type.part(kind, group)}"
 
     def parallel(self, j: int, k: int) -> int:
         """+1 or -1 when axes j and k are parallel by structure, else 0."""
@@ -261,9 +266,9 @@ class LegGeometry:
         return bool(np.max(np.abs(dots)) < TOLERANCE)
 
 
-def build_geometry(book: Book, leg_type: LegType, suffix: str, planar: bool) -> LegGeometry:
+def build_geometry(book: Book, leg_type: LegType, planar: bool) -> LegGeometry:
     """Introduce the geometric parameters, constant vectors and frames of a leg type."""
-    geometry = LegGeometry(leg_type, suffix)
+    geometry = LegGeometry(leg_type)
     builder = _Builder(book, geometry, planar)
     builder.points()
     builder.axes()
@@ -295,12 +300,19 @@ class _Builder:
     def field(self, stem: str, *numbers: Any, **facts: Any) -> tuple[sp.Expr, ...]:
         """A live parameter over the legs of the type; facts: its zeros and its rule."""
         path, shape, unit, meaning = _FIELDS[stem]
-        path, name, meaning = (filled(text, numbers) for text in (path, stem, meaning))
+        path, meaning = (filled(text, numbers) for text in (path, meaning))
+        name = filled(self._labelled(stem, numbers), numbers)
         own, paths = self.type.name, tuple(f"legs[{i}].{path}" for i in self.type.indices)
         values = self.type.over_legs(lambda leg: value_at(leg, path))
         return self.book.parameters.add(
             ParameterField(f"{own}_{name}", own, shape, unit, meaning, paths, values, **facts)
         )
+
+    def _labelled(self, stem: str, numbers: tuple[Any, ...]) -> str:
+        """A stem with the label of its joint."""
+        if "joint#" not in stem:
+            return stem
+        return stem.replace("joint#", self.type.part("joint", numbers[0]))
 
     def _turned(self) -> Rule:
         """What a frame must be."""

@@ -85,7 +85,7 @@ nu_#       | \nu_{#}                  | RATE | Sec. 2.2, joint table
     bias of the angular acceleration along moment direction #
 alpha_#    | \boldsymbol\alpha_{#} ; \boldsymbol\Omega_{#} | RATE
     angular acceleration of link #
-a_o#       | \mathbf a_{o#} ; \mathbf V_{#} | RATE
+a_o_#      | \mathbf a_{o#} ; \mathbf V_{#} | RATE
     acceleration of the origin of joint #
 w_#        | \mathbf w_{#}            | RECIPROCITY RECIPROCAL | Sec. 2.3
     reciprocal vector %
@@ -618,7 +618,7 @@ class MotionWriter:
                 motion.origin_acceleration[j] = rhs
                 continue
             motion.origin_acceleration[j] = self.eq.collected(
-                "a_o#",
+                "a_o_#",
                 rhs,
                 j,
                 body=g.frame("axes", previous),

@@ -180,13 +180,13 @@ class LinearWriter:
         )
         words = latex, coefficient_latex, title
         coefficients = {
-            unknown: self._coefficient(k, unknown, form, words, rhs, name=name, body=body)
-            for k, unknown in enumerate(form.coefficients)
+            unknown: self._coefficient(unknown, form, words, rhs, stem=stem, body=body)
+            for unknown in form.coefficients
         }
         remainder = form.remainder
         if not (isinstance(remainder, VectorSymbol | sp.Symbol) or remainder in (ZeroVector, 0)):
             remainder = book.define(
-                f"{name}_o",
+                g.name(f"{stem}_o"),
                 remainder,
                 f"{latex}^{{\\circ}}",
                 f"remainder without the acceleration in: {title}",
@@ -205,22 +205,27 @@ class LinearWriter:
         return symbol
 
     def _mark(self, unknown: Any) -> str:
-        """How a coefficient names its unknown: y_3 for an extra coordinate, else alpha."""
+        """How a coefficient's symbol names its unknown: y_3 for an extra coordinate, else alpha."""
         joint = self.book.notation[unknown.name].joint
         return f"y_{joint}" if joint else r"\boldsymbol\alpha"
 
+    def _stem(self, unknown: Any, stem: str) -> str:
+        """The name of a coefficient: dy_3_G, dalpha_G, or d_G of the connection point."""
+        joint = self.book.notation[unknown.name].joint
+        of = "" if unknown == self.collection.a_p else f"y_{joint}" if joint else "alpha"
+        return f"d{of}_{stem}"
+
     def _coefficient(
         self,
-        k: int,
         unknown: Any,
         form: LinearForm,
         words: tuple[str, str, str],
         rhs: Any,
         *,
-        name: str,
+        stem: str,
         body: str | None,
     ) -> Any:
-        """Coefficient k of a form: by its name if it has one, else defined.
+        """A coefficient of a form: by its name if it has one, else defined.
 
         The words are the quantity's LaTeX, that of its first coefficient, and its title.
         """
@@ -230,7 +235,7 @@ class LinearWriter:
         latex, coefficient_latex, title = words
         first = unknown == self.collection.a_p
         return self.book.define(
-            f"d_{name}" if first else f"d{k}_{name}",
+            self.g.name(self._stem(unknown, stem)),
             value,
             coefficient_latex if first else f"{latex}^{{({self._mark(unknown)})}}",
             f"coefficient of the acceleration in: {title}",

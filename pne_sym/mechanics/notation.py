@@ -11,7 +11,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from pne_sym.derivation import Derivation, Quantity, Role, names_in
+from pne_sym.derivation import Derivation, Quantity, Role, full_name, names_in
 from pne_sym.model.entry import nearest
 from pne_sym.model.errors import SpecError, show
 from pne_sym.model.manipulator import Manipulator
@@ -101,14 +101,15 @@ def with_symbols(
     bold = _bold(derivation)
     following: dict[str, Symbol] = {}
     own: dict[str, Symbol] = {}
-    for name, text in manipulator.symbols:
-        _check_name(manipulator, name, derivation, places.keys() & derivation.notation.keys())
+    for key, text in manipulator.symbols:
+        name = full_name(derivation, key)
+        _check_name(manipulator, key, name, derivation, places.keys() & derivation.notation.keys())
         parts = split_symbol(text)
         assert parts is not None, text
         mark = Mark(*parts, bold=name in bold)
         quantity = derivation.notation[name]
-        following |= {n: Symbol(latex, name) for n, latex in _following(derivation, quantity, mark)}
-        own |= {n: Symbol(latex, name) for n, latex in _itself(derivation, name, mark)}
+        following |= {n: Symbol(latex, key) for n, latex in _following(derivation, quantity, mark)}
+        own |= {n: Symbol(latex, key) for n, latex in _itself(derivation, name, mark)}
     changed = following | own
     notation = {
         name: replace(quantity, latex=changed[name].latex) if name in changed else quantity
@@ -124,14 +125,14 @@ def with_symbols(
 
 
 def _check_name(
-    manipulator: Manipulator, name: str, derivation: Derivation, known: Collection[str]
+    manipulator: Manipulator, key: str, name: str, derivation: Derivation, known: Collection[str]
 ) -> None:
-    where = f"symbols.{name}"
+    where = f"symbols.{key}"
     if name not in known:
         raise SpecError(
             manipulator.name,
             where,
-            f"no quantity {show(name)}{nearest(name, known)}",
+            f"no quantity {show(key)}{nearest(key, _short(derivation, known))}",
             "a name that occurs in the derivation",
         )
     quantity = derivation.notation[name]
@@ -140,6 +141,12 @@ def _check_name(
         raise SpecError(
             manipulator.name, where, "its symbol is the same in every report", "no such field"
         )
+
+
+def _short(derivation: Derivation, names: Collection[str]) -> list[str]:
+    """Names as they may be written: without the leg type where there is only one."""
+    (first, *others) = (f"{info.name}_" for info in derivation.leg_types)
+    return [name if others else name.removeprefix(first) for name in names]
 
 
 def _itself(

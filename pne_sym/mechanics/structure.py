@@ -1,22 +1,16 @@
-"""Leg types: legs of equal structure are derived once.
-
-Structure is what contract-wise cannot change with a parameter's value: joint
-kinds and order, driven and extra marks, axes along coordinate directions,
-relations between neighbouring axes, zero offsets, massless links; which friction,
-springs and motors there are.
-"""
+"""Leg types: legs of equal structure are derived once."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pne_sym.model.manipulator import Joint, Leg, Manipulator, Vector3
+from pne_sym.model.leg_types import TOLERANCE, is_coordinate, named_structures
+from pne_sym.model.manipulator import Joint, Leg, Manipulator
 
-TOLERANCE = 1e-9
+__all__ = ["TOLERANCE", "LegType", "architecture_of", "is_coordinate", "leg_types"]
 Array = NDArray[np.float64]
 
 
@@ -48,78 +42,46 @@ class LegType:
         """Number of legs of this type."""
         return len(self.legs)
 
+    def label(self, j: int) -> str:
+        """What joint j (from 1) is called in names: its own name, else its number."""
+        named = 1 <= j <= len(self.model.joints) and self.model.joints[j - 1].name
+        return named or str(j)
+
+    def part(self, word: str, j: int) -> str:
+        """A word with the label of joint j: joint2, joint_knee."""
+        label = self.label(j)
+        return f"{word}{label}" if label.isdigit() else f"{word}_{label}"
+
     def over_legs(self, pick: object) -> Array:
         """Numbers picked from every leg, stacked."""
         assert callable(pick)
         return np.array([pick(leg) for leg in self.legs], dtype=float)
 
 
-def is_coordinate(axis: Sequence[float]) -> bool:
-    """Whether an axis lies along a coordinate direction of its frame."""
-    return sorted(abs(a) for a in axis) == [0.0, 0.0, 1.0]
-
-
 def leg_types(manipulator: Manipulator) -> tuple[LegType, ...]:
-    """Group the legs by structure, in order of first appearance."""
-    groups: dict[object, list[int]] = {}
-    for index, leg in enumerate(manipulator.legs):
-        groups.setdefault(structure_key(leg), []).append(index)
+    """Group the legs by structure, in order of first appearance.
+
+    A type has the name that the specification gives it, else one of its architecture.
+    """
+    groups = named_structures(manipulator.legs)
+    taken = {group.name for group in groups}
     types: list[LegType] = []
     used: dict[str, int] = {}
-    for indices in groups.values():
-        legs = tuple(manipulator.legs[i] for i in indices)
+    for group in groups:
+        legs = tuple(manipulator.legs[i] for i in group.indices)
         architecture = architecture_of(legs[0])
-        stem = architecture.replace("_", "").replace("*", "").lower()
-        used[stem] = used.get(stem, 0) + 1
-        name = stem if used[stem] == 1 else f"{stem}{used[stem]}"
-        types.append(LegType(name, architecture, tuple(indices), legs, used[stem]))
+        used[architecture] = used.get(architecture, 0) + 1
+        name = group.name or _unused(architecture, taken)
+        taken.add(name)
+        types.append(LegType(name, architecture, group.indices, legs, used[architecture]))
     return tuple(types)
 
 
-def structure_key(leg: Leg) -> tuple[object, ...]:
-    """What two legs must share to be of one type."""
-    joints = tuple(
-        (
-            joint.kind,
-            joint.actuated,
-            joint.extra,
-            joint.link.is_massless,
-            _axis_key(joint.axis),
-            tuple(component == 0.0 for component in joint.offset),
-            _effects_key(joint),
-        )
-        for joint in leg.joints
-    )
-    axes = np.array([joint.axis for joint in leg.joints])
-    relations = np.rint(np.where(_near_integer(axes @ axes.T), axes @ axes.T, 2.0)).astype(int)
-    end = leg.platform_joint
-    return (
-        joints,
-        tuple(relations.ravel()),
-        end.kind,
-        tuple(component == 0.0 for component in end.offset),
-        _axis_key(end.axis_link),
-        _axis_key(end.axis_platform),
-    )
-
-
-def _effects_key(joint: Joint) -> tuple[object, ...]:
-    """Which parameters there are of friction, spring and motor; their values are live."""
-    effects = (joint.friction, joint.spring, joint.actuator)
-    return tuple(
-        effect and tuple(name for name, value in vars(effect).items() if value is not None)
-        for effect in effects
-    )
-
-
-def _axis_key(axis: Vector3 | None) -> object:
-    if axis is None:
-        return None
-    return tuple(int(a) for a in axis) if is_coordinate(axis) else "general"
-
-
-def _near_integer(values: Array) -> NDArray[np.bool_]:
-    return np.asarray(np.abs(values - np.rint(values)) < TOLERANCE, dtype=np.bool_)
+def _unused(architecture: str, taken: set[str]) -> str:
+    """The letters of an architecture, with a number where a type has this name already."""
+    stem = architecture.replace("_", "").replace("*", "").lower()
+    names = (stem, *(f"{stem}{k}" for k in range(2, len(taken) + 2)))
+    return next(name for name in names if name not in taken)
 
 
 def architecture_of(leg: Leg) -> str:

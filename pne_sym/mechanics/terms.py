@@ -98,7 +98,7 @@ class Named(Protocol):
     """What tells names of leg types apart: see `leg_geometry.LegGeometry`."""
 
     def name(self, stem: str) -> str:
-        """The stem with what tells it apart."""
+        """The stem with the leg type's name, and the names of joints."""
 
     def kind(self, j: int) -> JointKind:
         """Kind of joint j."""
@@ -141,9 +141,8 @@ class Writer:
         return self.collect(filled(stem, numbers), rhs, latex, title, law, **told)
 
     def _name(self, stem: str, numbers: Sequence[Any]) -> str:
-        """The name in this leg type; the mark of a remainder comes last."""
-        plain = filled(stem, numbers).partition(":")[0]
-        return self.g.name(plain.removesuffix("_o")) + "_o" * plain.endswith("_o")
+        """The name in this leg type."""
+        return self.g.name(filled(stem, numbers).partition(":")[0])
 
     def _told(
         self, stem: str, numbers: Sequence[Any], facts: dict[str, Any]

@@ -41,7 +41,8 @@ def to_full_form(manipulator: Manipulator) -> Plain:
 
 
 def _leg(leg: Leg) -> Plain:
-    return {
+    names = {"type": leg.type, "name": leg.name}
+    return {key: name for key, name in names.items() if name} | {
         "base_point": list(leg.base_point),
         "base_frame": _rows(leg.base_frame),
         "joints": [_joint(joint) for joint in leg.joints],
@@ -51,7 +52,8 @@ def _leg(leg: Leg) -> Plain:
 
 
 def _joint(joint: Joint) -> Plain:
-    form: Plain = {
+    named: Plain = {"name": joint.name} if joint.name else {}
+    form: Plain = named | {
         "kind": str(joint.kind),
         "axis": list(joint.axis),
         "offset": list(joint.offset),

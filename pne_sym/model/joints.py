@@ -11,13 +11,16 @@ from pne_sym.model.errors import SpecError
 from pne_sym.model.joint_kinds import WrittenJoint
 from pne_sym.model.kind import letters
 from pne_sym.model.manipulator import ZERO3, Joint, PlatformJoint, Vector3
+from pne_sym.model.names import read_part_name
 from pne_sym.model.platform_kinds import PlatformJointKind
 from pne_sym.model.read_effects import FIELDS as EFFECTS
 from pne_sym.model.read_effects import read_effects
 from pne_sym.model.spherical import USUAL
 from pne_sym.model.values import ROUNDING, axis, flags, number, offset, rotation
 
-FIELDS = ("kind", "axis", "axes", "offset", "pitch", "actuated", "extra", "link", *EFFECTS)
+FIELDS = (
+    "kind", "axis", "axes", "offset", "pitch", "actuated", "extra", "link", *EFFECTS, "name"
+)  # fmt: skip
 PLATFORM_FIELDS = ("kind", "offset", "axis_link", "axis_platform", "rotation")
 MAX_JOINTS = 12
 
@@ -53,6 +56,7 @@ def read_joint(entry: Entry, *, plane: bool) -> tuple[Joint, ...]:
     last_link = read_body(link, plane=plane) if link else MASSLESS
     pitch = _pitch(table, kind)
     effects = read_effects(table, actuated, mixed=len(set(kinds)) > 1)
+    names = _names(table.get("name"), len(kinds))
     last = len(kinds) - 1
     return tuple(
         Joint(
@@ -63,10 +67,24 @@ def read_joint(entry: Entry, *, plane: bool) -> tuple[Joint, ...]:
             actuated=actuated[i],
             extra=extra[i],
             link=last_link if i == last else MASSLESS,
+            name=names[i],
             **vars(effects[i]),
         )
         for i in range(len(kinds))
     )
+
+
+def _names(entry: Entry | None, count: int) -> list[str]:
+    """Of the freedoms of a joint: a list, or one name, which is numbered where they are several."""
+    if entry is None:
+        return [""] * count
+    if isinstance(entry.value, list | tuple):
+        entries = entry.items()
+        if len(entries) != count:
+            raise entry.fault(f"a name, or a list of {count}: one for each freedom")
+        return [read_part_name(each) for each in entries]
+    name = read_part_name(entry)
+    return [name] if count == 1 else [f"{name}_{k}" for k in range(1, count + 1)]
 
 
 def read_platform_joint(entry: Entry, *, plane: bool) -> PlatformJoint:

@@ -10,6 +10,7 @@ from pne_sym.model.entry import Entry, Table, nearest
 from pne_sym.model.errors import SpecError, SpecWarning
 from pne_sym.model.joints import FIELDS as JOINT_FIELDS
 from pne_sym.model.joints import check_count, read_joint, read_platform_joint
+from pne_sym.model.leg_types import Key, named_structures, structure_key
 from pne_sym.model.manipulator import (
     IDENTITY3,
     ZERO3,
@@ -19,11 +20,13 @@ from pne_sym.model.manipulator import (
     PlatformJointKind,
     Space,
 )
-from pne_sym.model.names import read_type_name
+from pne_sym.model.names import read_part_name, read_type_name, refuse_twice
 from pne_sym.model.spherical import USUAL, with_axes
 from pne_sym.model.values import rotation, vector
 
-FIELDS = ("type", "base_point", "base_frame", "joints", "platform_joint", "platform_point")
+FIELDS = (
+    "type", "base_point", "base_frame", "joints", "platform_joint", "platform_point", "name"
+)  # fmt: skip
 TYPE_FIELDS = ("joints", "platform_joint")
 MAX_LEGS = 128
 
@@ -52,11 +55,51 @@ def read_legs(legs: Entry, leg_types: Entry | None, space: Space) -> tuple[Leg, 
         raise legs.fault(f"1 to {MAX_LEGS} legs", problem=f"{len(entries)} legs")
     used: set[str] = set()
     result = tuple(_read_leg(entry, types, used, space) for entry in entries)
+    refuse_twice(legs, [leg.name for leg in result], "leg")
     for name in types.keys() - used:
         entry = types[name].entry
         message = f"{entry.source}: {entry.where}: no leg is of this type"
         warnings.warn(message, SpecWarning, stacklevel=2)
-    return result
+    return _typed(legs, result, {name: _structure(table, space) for name, table in types.items()})
+
+
+def _typed(
+    legs: Entry, read: tuple[Leg, ...], written: Mapping[str, Key | None]
+) -> tuple[Leg, ...]:
+    """The legs with the names of their structures for those of their types."""
+    structures = named_structures(read, written)
+    names = [structure.name for structure in structures if structure.name]
+    for structure in structures:
+        if names.count(structure.name) > 1:
+            raise legs.fault(
+                "another name for a leg or a leg type",
+                problem=f"legs of two structures would be of the type '{structure.name}'",
+            )
+    called = [
+        f"{leg.name or f'leg{i}'}_{joint.name or f'joint{j}'}"
+        for i, leg in enumerate(read, 1)
+        for j, joint in enumerate(leg.joints, 1)
+    ]
+    if len(set(called)) < len(called):
+        twice = next(name for name in called if called.count(name) > 1)
+        problem = f"two joints would be called '{twice}'"
+        raise legs.fault("other names for a leg or a joint", problem=problem)
+    found = {i: structure.name for structure in structures for i in structure.indices}
+    return tuple(replace(leg, type=found[i]) for i, leg in enumerate(read))
+
+
+def _structure(shared: Table, space: Space) -> Key | None:
+    """The structure of a leg type as it is written; None where legs have to complete it."""
+    plane = is_plane(space)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", SpecWarning)  # they come with the legs
+            bare = Table(shared.entry, {})
+            end = _platform_joint(bare, shared, plane=plane)
+            joints = _joints(bare, shared, end, plane=plane)
+    except SpecError:
+        return None
+    return structure_key(Leg(ZERO3, IDENTITY3, joints, end, ZERO3))
 
 
 def _leg_types(entry: Entry | None) -> _LegTypes:
@@ -69,9 +112,11 @@ def _read_leg(entry: Entry, types: _LegTypes, used: set[str], space: Space) -> L
     table = entry.table(FIELDS)
     plane = is_plane(space)
     shared = _shared(table, types, used)
-    frame = table.get("base_frame")
+    frame, named, of = table.get("base_frame"), table.get("name"), table.get("type")
     end = _platform_joint(table, shared, plane=plane)
     return Leg(
+        type=of.text() if of else "",
+        name=read_part_name(named) if named else "",
         base_point=vector(table.require("base_point", "its position (m)"), plane=plane),
         base_frame=rotation(frame, plane=plane) if frame else IDENTITY3,
         joints=_joints(table, shared, end, plane=plane),
@@ -86,6 +131,10 @@ def _shared(table: Table, types: _LegTypes, used: set[str]) -> Table | None:
     if entry is None:
         return None
     name = entry.text()
+    own = table.get("joints")
+    if not types and own is not None and isinstance(own.value, list | tuple):
+        read_type_name(entry, name)  # of legs that are written out: a name, and nothing else
+        return None
     if name not in types:
         known = ", ".join(list(types)[:10]) or "a table [leg_types.NAME] to be added"
         raise entry.fault(f"the name of a leg type: {known}{nearest(name, types)}")
@@ -114,6 +163,7 @@ def _joints(
             parts[k] = with_axes(parts[k], next(iter(parts[k + 1 : k + 2]), [None])[0], end)
     joints = tuple(joint for part in parts for joint in part)
     check_count(source, len(joints))
+    refuse_twice(source, [joint.name for joint in joints], "joint")
     return joints
 
 

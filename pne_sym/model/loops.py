@@ -23,14 +23,17 @@ class Gap:
         leg: its leg, counted from 0.
         size: how wide, with its unit.
         condition: which condition fails, in words; empty where the points do not coincide.
+        name: of the leg, if it has one.
     """
 
     leg: int
     size: str
     condition: str = ""
+    name: str = ""
 
     def __str__(self) -> str:
-        where = f"legs[{self.leg}] has a gap of {self.size}"
+        named = f" ({self.name})" if self.name else ""
+        where = f"legs[{self.leg}]{named} has a gap of {self.size}"
         return f"{where}: {self.condition}" if self.condition else where
 
 
@@ -79,13 +82,14 @@ class Loops:
     def widest(self, X: Array, q: Array) -> Gap:
         """The gap that is widest: a length, or an angle between axes."""
         leg = int(np.argmax(self.gaps(X, q)))
+        name = self.legs[leg].name
         pose = pose_at(self.space, X.tolist(), self.centre)
         gap = np.abs(leg_gap(self.legs[leg], q[self.slices()[leg]], pose)[0])
         points, axes = gap[:3], gap[3:]
         if not axes.max(initial=0.0) > points.max():
-            return Gap(leg, f"{points.max():.3g} m")
+            return Gap(leg, f"{points.max():.3g} m", name=name)
         kind = self.legs[leg].platform_joint.kind
-        return Gap(leg, f"{kind.angle(float(np.linalg.norm(axes))):.3g} rad", kind.open)
+        return Gap(leg, f"{kind.angle(float(np.linalg.norm(axes))):.3g} rad", kind.open, name)
 
 
 def legs_closed(loops: Loops, X: Array, q: Array) -> Array:

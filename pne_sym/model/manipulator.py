@@ -89,6 +89,7 @@ class Joint:
         extra: the displacement is a generalised coordinate of its own.
         link: inertia of the link that the joint moves, in the link's frame.
         friction, spring, actuator, limits: what acts in the joint, and its bounds; None: absent.
+        name: what names in the generated code are made of; "": its number in the leg.
     """
 
     kind: JointKind
@@ -102,6 +103,7 @@ class Joint:
     spring: Spring | None = None
     actuator: Actuator | None = None
     limits: Limits | None = None
+    name: str = ""
 
     @property
     def turns(self) -> bool:
@@ -160,6 +162,8 @@ class Leg:
         joints: from the base to the platform.
         platform_joint: the joint that closes the chain.
         platform_point: of the platform joint, in the platform frame, m.
+        type: name of its leg type; "": legs of its structure are named by their architecture.
+        name: its own; "": its number.
     """
 
     base_point: Vector3
@@ -167,6 +171,8 @@ class Leg:
     joints: tuple[Joint, ...]
     platform_joint: PlatformJoint
     platform_point: Vector3
+    type: str = ""
+    name: str = ""
 
 
 @dataclass(frozen=True)

@@ -5,10 +5,12 @@ from __future__ import annotations
 import keyword
 import re
 import sys
+from collections.abc import Sequence
 
 from pne_sym.model.entry import Entry
 
 LONGEST = 40
+LONGEST_OF_PART = 20
 GRAMMAR = r"[a-z][a-z0-9]*(?:_[a-z0-9]+)*"
 """Single underscores only: C++ keeps names with two for itself."""
 _GRAMMAR = re.compile(GRAMMAR)
@@ -72,6 +74,36 @@ def read_type_name(entry: Entry, name: str) -> str:
             problem=f"leg type named {name[:LONGEST]!r}",
         )
     return name
+
+
+def read_part_name(entry: Entry) -> str:
+    """The name of a leg or a joint: the same grammar, and short, as names are made of it.
+
+    Raises:
+        SpecError: outside the grammar.
+    """
+    name = entry.text()
+    if len(name) > LONGEST_OF_PART or not _GRAMMAR.fullmatch(name):
+        raise entry.fault(f"{_EXPECTED}; at most {LONGEST_OF_PART} characters")
+    return name
+
+
+def refuse_twice(entry: Entry, names: Sequence[str], part: str) -> None:
+    """Refuse legs, or joints of a leg, that would be called alike.
+
+    Args:
+        entry: the list.
+        names: of all, in order; "" for what is called by its number.
+        part: the word that stands before numbers, leg or joint.
+
+    Raises:
+        SpecError: two of them have one name.
+    """
+    called = [name or f"{part}{k}" for k, name in enumerate(names, 1)]
+    for k, name in enumerate(called):
+        if name in called[:k]:
+            problem = f"{part}s {called.index(name) + 1} and {k + 1} are both called '{name}'"
+            raise entry.fault(f"a name of its own for each {part}", problem=problem)
 
 
 def reserved() -> list[str]:

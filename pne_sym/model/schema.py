@@ -23,6 +23,10 @@ _NUMBER: Schema = {"type": "number", "minimum": -values.LARGEST, "maximum": valu
 _POSITIVE: Schema = {"type": "number", "minimum": 0, "maximum": values.LARGEST}
 _FLAG: Schema = {"type": "boolean"}
 _NAME_PATTERN = f"^(?=.{{1,{names.LONGEST}}}$){names.GRAMMAR}$"
+_PART: Schema = {
+    "type": "string",
+    "pattern": f"^(?=.{{1,{names.LONGEST_OF_PART}}}$){names.GRAMMAR}$",
+}
 
 
 def json_schema() -> Schema:
@@ -128,6 +132,7 @@ def _platform() -> Schema:
 def _joint_fields() -> dict[str, Schema]:
     flags: Schema = {"anyOf": [_FLAG, _list_of(_FLAG, 1, 3)]}
     return {
+        "name": {"anyOf": [_PART, _list_of(_PART, 1, 3)]},
         "kind": {"enum": [kind.letter for kind in WrittenJoint]},
         "axis": _ref("axis"),
         "axes": _list_of(_ref("axis"), 2, 3),
@@ -224,6 +229,7 @@ def _leg() -> Schema:
     }
     fields: dict[str, Schema] = {
         "type": {"type": "string", "pattern": _NAME_PATTERN},
+        "name": _PART,
         "base_point": _ref("vector"),
         "base_frame": _ref("rotation"),
         "joints": {"anyOf": [_joints(_ref("joint")), override]},

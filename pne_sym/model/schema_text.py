@@ -30,6 +30,8 @@ MEANING: dict[str, dict[str, str]] = {
         "payload": "A second body fixed in the platform, in its frame; parameters of its own.",
     },
     "joint": {
+        "name": "What the joint is called in code and report; at most 20 characters. Of U, C, S "
+        "one name is numbered, a list has one for each freedom. Default: its number.",
         "kind": "R revolute, P prismatic, H helical, U universal, C cylindrical, S spherical.",
         "axis": "Unit vector in the preceding link's frame, or a direction such as x or -z.",
         "axes": "Of U (two) and S (three): unit vectors, each perpendicular to the next.",
@@ -79,6 +81,8 @@ MEANING: dict[str, dict[str, str]] = {
     },
     "leg": {
         "type": "Name of a leg type.",
+        "name": "What the leg is called in code, report and messages; at most 20 characters. "
+        "Default: its number.",
         "base_point": "Where the leg starts, base frame, m.",
         "base_frame": "Rotation from leg to base axes: its columns are the leg's axes; or rpy.",
         "joints": "From the base to the platform; or, with a type, fields that differ: "

@@ -312,13 +312,12 @@ def _text(value: object) -> str:
 
 
 def _compare_reports(before: str, after: str) -> list[EquationDifference]:
-    """Equations of two reports by text: the same where left-hand side and chapter agree."""
-    old = {(e.id.rstrip("0123456789"), e.left): e for e in printed_equations(before)}
+    """Equations of two reports by text: the same where left-hand side and id agree."""
+    old = {(e.id, e.left): e for e in printed_equations(before)}
     found = []
     for equation in printed_equations(after):
-        chapter = equation.id.rstrip("0123456789")
-        partner = old.pop((chapter, equation.left), None)
-        leg_type = chapter.partition("-")[0] if "-" in chapter else ""
+        partner = old.pop((equation.id, equation.left), None)
+        leg_type = equation.id.partition("-")[0] if "-" in equation.id else ""
         old_text, new_text = (partner.formula if partner else ""), equation.formula
         if partner is None:
             verdict = Verdict.ADDED

@@ -19,9 +19,10 @@ from pne_sym.review.difference import (
     Verdict,
 )
 from pne_sym.review.effect_text import effect_lines
-from pne_sym.review.interface_text import interface_lines, listed, ranges
+from pne_sym.review.interface_text import interface_lines, listed, shortened
 
 _SHOWN = 6
+_LISTED = 60
 """Equations of a kind shown with their formulas; further ones are listed by id."""
 _EDITS = 12
 _SAME = (Verdict.IDENTICAL, Verdict.EQUAL)
@@ -103,7 +104,7 @@ def _cause(found: Comparison) -> str:
         return "not all is compared" + (f"; first at {place}" if place else "")
     if found.structure:
         e = found.structure[0]
-        return f"the derivation, first at {e.id} ({e.name}), {e.title}"
+        return f"the derivation, first at {e.id}, {e.title}"
     if found.statement is not None:
         s = found.statement
         return f"the lowering, first at {s.equation} ({s.target}) in {s.function}"
@@ -195,7 +196,7 @@ def _structure(found: Comparison) -> Iterator[str]:
         for e in group[:_SHOWN]:
             yield from _equation(e)
         if len(group) > _SHOWN:
-            yield from listed("and", ranges([_place(e) for e in group[_SHOWN:]]))
+            yield from listed("and", _rest(group))
     if found.statement is not None:
         s = found.statement
         yield (
@@ -229,8 +230,15 @@ def _counted(group: list[EquationDifference]) -> str:
     return ", ".join(f"{n} of {t}" for t, n in types.items())
 
 
+def _rest(group: list[EquationDifference]) -> list[str]:
+    """Places of equations that are not shown, of so many that they can be read."""
+    found = list(shortened(_place(e) for e in group[_SHOWN:]))
+    more = [f"and {len(found) - _LISTED} more"] if len(found) > _LISTED else []
+    return [*found[:_LISTED], *more]
+
+
 def _place(e: EquationDifference) -> str:
-    return e.id if any(c.isdigit() for c in e.id) else f"{e.id} {e.name}"
+    return f"{e.id} {e.name}" if e.id in ("output", e.leg_type) else e.id
 
 
 def _equation(e: EquationDifference) -> Iterator[str]:
@@ -292,7 +300,7 @@ def _details(found: Comparison) -> Iterator[str]:
         for e in rewritten[:_SHOWN]:
             yield from _equation(e)
         if len(rewritten) > _SHOWN:
-            yield from listed("and", ranges([_place(e) for e in rewritten[_SHOWN:]]))
+            yield from listed("and", _rest(rewritten))
     kept = (Verdict.IDENTICAL, Verdict.FOLLOWS)
     renamed = [e for e in found.equations if "renamed:" in e.note and e.verdict in kept]
     for e in renamed[:_SHOWN]:

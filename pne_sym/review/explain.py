@@ -5,7 +5,7 @@
 >>> from pne_sym.review.explain import explain
 >>> told = explain(compile_bundle(find("planar_3rpr")), "S")
 >>> told.equation.id, told.formula
-('rpr-K1', 'S = t + q - b')
+('rpr-S', 'rpr_S = t + rpr_q - rpr_b')
 """
 
 from __future__ import annotations
@@ -16,7 +16,14 @@ from dataclasses import dataclass
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.report.names import printer_for
-from pne_sym.derivation import Derivation, Equation, Quantity, names_in, rotations_by_place
+from pne_sym.derivation import (
+    Derivation,
+    Equation,
+    Quantity,
+    full_name,
+    names_in,
+    rotations_by_place,
+)
 from pne_sym.review.plain import plain
 
 
@@ -65,26 +72,32 @@ class Explanation:
 
 
 def find_equation(derivation: Derivation, wanted: str) -> Equation:
-    """The equation of an id (ups-K5) or of the name that it defines.
+    """The equation of an id (ups-rho2_1) or of the name that it defines.
+
+    The name may lack its leg type where only one type has it; the fifth equation of a
+    chapter is found under the chapter's id, too (ups-K5).
 
     Raises:
         UnknownEquationError: there is none; the message has the nearest ids and names.
     """
     equations = (*derivation.equations(), *derivation.rotations())
-    for equation in equations:
-        if wanted in (equation.id, equation.name):
-            return equation
+    known = {f"{c.id}{k}": e for c in derivation.chapters for k, e in enumerate(c.equations, 1)}
+    known |= {key: e for e in equations for key in (e.name, e.id)}
+    found = known.get(wanted) or known.get(full_name(derivation, wanted))
+    if found is not None:
+        return found
     same = [e for e in equations if wanted.lower() in (e.id.lower(), e.name.lower())]
     if len(same) == 1:
         return same[0]
-    known = [name for e in equations for name in (e.id, e.name)]
-    if wanted in derivation.notation or wanted in derivation.parameters.entries:
-        users = [e.id for e in equations if wanted in names_in(e.rhs)]
+    name = full_name(derivation, wanted)
+    if name in derivation.notation or name in derivation.parameters.entries:
+        users = [e.id for e in equations if name in names_in(e.rhs)]
         raise UnknownEquationError(
             f"{wanted!r} is given, no equation defines it; used by "
             f"{', '.join(users[:12]) or 'the outputs'}"
         )
-    close = difflib.get_close_matches(wanted[:60], known, n=4, cutoff=0.4)
+    ids = [key for e in equations for key in (e.id, e.name)]
+    close = difflib.get_close_matches(wanted[:60], ids, n=4, cutoff=0.4)
     hint = f"; nearest: {', '.join(close)}" if close else ""
     raise UnknownEquationError(f"no equation {wanted[:60]!r}{hint}; without it all are listed")
 

@@ -28,9 +28,10 @@ def contents(bundle: Bundle) -> Iterator[str]:
     """Chapters and equations."""
     for chapter in bundle.derivation.chapters:
         yield f"{chapter.id}  {chapter.title}"
+        width = max(len(equation.id) for equation in chapter.equations)
         for equation in chapter.equations:
             formula = f"{equation.name} = {plain(equation.rhs)}"
-            yield from _hanging(f"  {equation.id:<9} ", formula)
+            yield from _hanging(f"  {equation.id:<{width}}  ", formula)
         yield ""
 
 

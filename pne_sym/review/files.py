@@ -11,7 +11,7 @@ from pne_sym.review.folders import Entry, Folder
 _LONG = 100
 _FAR = 30
 """Lines of code above a line in which its equation is looked for."""
-_ID = re.compile(rb"\s+(?:#|/\*|//|%)\s*\(([A-Za-z][A-Za-z0-9_-]{0,60})\)")
+_ID = re.compile(rb"\s+(?:#|/\*|//|%)\s*\(([A-Za-z][A-Za-z0-9_-]{0,200})\)")
 
 
 def differing(before: Folder, after: Folder) -> list[str]:

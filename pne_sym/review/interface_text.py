@@ -9,7 +9,6 @@ from collections.abc import Iterable, Iterator
 from pne_sym.review.difference import Change
 
 _SHOWN = 10
-_NUMBERED = re.compile(r"([\w-]*[A-Za-z])(\d+)")
 _ORDERS = ("joints", "actuators", "extra", "constraints")
 _SIZE = re.compile(r"'(\w+)': (\d+)")
 _LONG = 100
@@ -77,24 +76,17 @@ def _cut(start: str, names: list[str]) -> list[str]:
     return listed(start, [*names[:_SHOWN], *more])
 
 
-def ranges(ids: list[str]) -> list[str]:
-    """Ids that follow on one another told by the first and the last.
+def shortened(ids: Iterable[str]) -> Iterator[str]:
+    """Ids without the leg type where that before them has it.
 
-    >>> ranges(["rpr-K1", "rpr-K2", "rpr-K3", "rpr-V1", "output M"])
-    ['rpr-K1 to K3', 'rpr-V1', 'output M']
+    >>> list(shortened(["rpr-q_1", "rpr-q_2", "M_tt", "rpr-U"]))
+    ['rpr-q_1', 'q_2', 'M_tt', 'rpr-U']
     """
-    runs: list[list[str]] = []
-    for name in ids:
-        if runs and _follows(runs[-1][-1], name):
-            runs[-1].append(name)
-        else:
-            runs.append([name])
-    return [r[0] if len(r) == 1 else f"{r[0]} to {r[-1].rpartition('-')[2]}" for r in runs]
-
-
-def _follows(one: str, other: str) -> bool:
-    a, b = _NUMBERED.fullmatch(one), _NUMBERED.fullmatch(other)
-    return a is not None and b is not None and a[1] == b[1] and int(a[2]) + 1 == int(b[2])
+    known = ""
+    for id_ in ids:
+        leg_type, hyphen, rest = id_.partition("-")
+        yield rest if hyphen and leg_type == known else id_
+        known = leg_type if hyphen else ""
 
 
 def listed(start: str, names: Iterable[str]) -> list[str]:

@@ -406,10 +406,10 @@ def test_every_quantity_has_a_unit(name: str) -> None:
 def test_units_of_coefficients_and_of_constraints() -> None:
     found = derived(models.catalogue("tripod_3upu")).derivation
     units = {equation.name: found.notation[equation.name].unit for equation in found.equations()}
-    assert units["d_f_3"] == "kg"
-    assert units["d0_f_3"] == "kg m"  # of the platform's angular acceleration
-    assert units["d0_mu_2"] == "kg m^2"
-    assert (units["phi_c1"], units["gamma_c1"]) == ("-", "1/s^2")
+    assert units["upu_d_f_3"] == "kg"
+    assert units["upu_dalpha_f_3"] == "kg m"  # of the platform's angular acceleration
+    assert units["upu_dalpha_mu_2"] == "kg m^2"
+    assert (units["upu_phi_c1"], units["upu_gamma_c1"]) == ("-", "1/s^2")
     assert found.coordinates is not None
     assert found.coordinates.constraint_units == ("N m",) * 3
     assert "leg by leg (N·m, N·m, N·m)" in document("tripod_3upu")

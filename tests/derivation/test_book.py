@@ -40,7 +40,20 @@ def test_a_definition_gives_a_symbol_of_the_kind_of_its_right_hand_side() -> Non
     assert isinstance(define(found, "T", Outer(a, b)), TensorSymbol)
     assert define(found, "S", Outer(a, a), symmetric=True).is_symmetric
     assert define(found, "s", Dot(a, b)) == sp.Symbol("s", real=True)
-    assert [e.id for e in found.open_equations()] == ["k-1", "k-2", "k-3", "k-4"]
+    assert [e.id for e in found.open_equations()] == ["c", "T", "S", "s"]
+
+
+def test_an_equation_is_cited_by_the_name_that_it_defines() -> None:
+    """In a chapter on a leg type or on the platform, whatever stands before it."""
+    found = book()
+    found.chapter("ups-K", "", "", "ups")
+    found.chapter("ups_long-K", "", "", "ups_long")
+    for name in ("ups_q_3", "ups_long_q_3", "m_star"):
+        define(found, name, a + b)
+    found.chapter("M", "", "")
+    define(found, "ups_H_a_3", a + b)
+    ids = [e.id for e in found.all_equations()]
+    assert ids == ["ups-q_3", "ups_long-q_3", "m_star", "ups-H_a_3"]
 
 
 @pytest.mark.parametrize("taken", ["a", "c"])
@@ -51,7 +64,7 @@ def test_a_name_has_one_meaning(taken: str) -> None:
         define(found, taken, a + b)
 
 
-def test_what_nothing_needs_is_left_out_and_the_rest_numbered_anew() -> None:
+def test_what_nothing_needs_is_left_out() -> None:
     found = book()
     needed = define(found, "c", Cross(a, b))
     define(found, "idle", a + b)
@@ -68,20 +81,14 @@ def test_what_nothing_needs_is_left_out_and_the_rest_numbered_anew() -> None:
     found.chapter("d-", "Dynamics", "")
     define(found, "unused", b - a)
     derivation = wanted(found, last)
-    assert [(e.id, e.name) for e in derivation.equations()] == [
-        ("k-1", "c"),
-        ("k-2", "f"),
-        ("k-3", "size"),
-        ("k-4", "scale"),
-        ("k-5", "last"),
-    ]
+    assert [e.id for e in derivation.equations()] == ["c", "f", "size", "scale", "last"]
     assert [chapter.id for chapter in derivation.chapters] == ["k-"]
     assert derivation.definition("c").rhs == Cross(a, b)
     with pytest.raises(KeyError):
         derivation.definition("idle")
 
 
-def test_striking_out_gives_names_and_numbers_free() -> None:
+def test_striking_out_gives_names_free() -> None:
     found = book()
     define(found, "kept", a + b)
     mark = found.mark()
@@ -92,7 +99,7 @@ def test_striking_out_gives_names_and_numbers_free() -> None:
     assert {given.symbol.name for given in found.givens} == {"a", "b", "x"}
     again = define(found, "tried", a + x)
     define(found, "g", b + x)
-    assert [e.id for e in found.open_equations()] == ["k-1", "k-2", "k-3"]
+    assert [e.id for e in found.open_equations()] == ["kept", "tried", "g"]
     assert wanted(found, again).definition("tried").rhs == a + x
 
 

@@ -30,7 +30,7 @@ EULER        | Eq. 2                 | mu_#
 EULER        | Eq. 33                | mu_p
 EULER        | Eq. 34                | Z_q
 EULER        | Sec. 2.5, step 1.3    | N_#
-EULER        |                       | L_c# L_c#_#
+EULER        |                       | L_c_# L_c_#_#
 FREEDOM      | Eqs. 6, 7             | P_#
 FREEDOM      | Sec. 2.2, joint table | D_#_# Gamma_#
 FRICTION     |                       | dissipation
@@ -47,13 +47,13 @@ LOOP_CLOSURE | Eq. 37                | gamma_c# phi_c#
 LUMPING      |                       | J_# J_group_# J_star Sigma_# b_c h_# h_group_# h_star
 LUMPING      |                       | legs_size m_star per_turn_# rho_tip_# size size_# spread
 LUMPING      |                       | trace_J_# trace_J_group_# un_# um_# uu_# vs#_# end_l#
-NEWTON       |                       | P_c# T_#
+NEWTON       |                       | P_c_# T_#
 NEWTON       | Eq. 1                 | f_# phi_#
 NEWTON       | Eq. 3                 | c_true
 NEWTON       | Eq. 32                | f_p
 NEWTON       | Eq. 34                | Z_p
-RATE         |                       | S_dot_rest a_o# alpha_# beta_# eta_# etad_# nd_m# omega_# rel
-RATE         |                       | zeta_#
+RATE         |                       | S_dot_rest a_o_# alpha_# beta_# eta_# etad_# nd_m# omega_#
+RATE         |                       | rel zeta_#
 RATE         | Eq. 23                | S_ddot a_p u_#
 RATE         | Eq. 32                | a_t
 RATE         | Eqs. 10, 11, 17, 18   | acc_#
@@ -99,9 +99,8 @@ def ledger() -> dict[str, set[tuple[Law, str]]]:
 
 
 def stem(name: str, of: Derivation) -> str:
-    for info in of.leg_types:
-        name = re.sub(rf"_{info.name}(?=_|$)", "", name)
-    return re.sub(r"\d+", "#", name)
+    owners = [f"{t.name}_" for t in of.leg_types if name.startswith(f"{t.name}_")]
+    return re.sub(r"\d+", "#", name.removeprefix(max(owners, key=len, default="")))
 
 
 def examine(of: Derivation) -> None:
@@ -111,7 +110,7 @@ def examine(of: Derivation) -> None:
         name, law = stem(equation.name, of), equation.law
         quantity = of.notation[equation.name]
         if law is Law.RULES and equation.reference == COLLECTED:
-            assert quantity.remainder_of or re.match(r"d#?_", name), name
+            assert quantity.remainder_of or re.match(r"d(#|alpha|y_#)?_", name), name
             assert equation.expanded is not None, name
         else:
             assert (law, equation.reference) in ledger().get(name, set()), (name, equation)

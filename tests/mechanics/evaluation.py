@@ -92,10 +92,13 @@ class Names(Mapping[str, Any]):
         assert self.index is not None
         return self.situation.type_of[self.index]
 
-    @cached_property
-    def suffix(self) -> str:
-        """What tells this leg type's names from those of others."""
-        return f"_{self.leg_type}" if len(self.derivation.leg_types) > 1 else ""
+    def named(self, stem: str) -> str:
+        """The name of a quantity of this leg."""
+        return f"{self.leg_type}_{stem}"
+
+    def stem(self, name: str) -> str:
+        """A name without its leg type."""
+        return name.removeprefix(f"{self.leg_type}_")
 
     def _parameters(self) -> dict[str, float]:
         table, found = self.derivation.parameters, {}
@@ -126,12 +129,12 @@ class Names(Mapping[str, Any]):
         q = s.state.q[joint_slices(s.manipulator)[index]]
         for j, joint in enumerate(self.leg.joints, 1):
             if joint.extra:
-                found[f"y_{j}_extra{self.suffix}"] = s.state.X[pose + first]
-                found[f"yd_{j}{self.suffix}"] = s.state.V[task + first]
-                found[f"ydd_{j}{self.suffix}"] = s.A[task + first]
+                found[self.named(f"y_{j}_extra")] = s.state.X[pose + first]
+                found[self.named(f"yd_{j}")] = s.state.V[task + first]
+                found[self.named(f"ydd_{j}")] = s.A[task + first]
                 first += 1
-            elif f"q_{j}{self.suffix}" not in self.defined:
-                found[f"q_{j}{self.suffix}"] = q[j - 1]
+            elif self.named(f"q_{j}") not in self.defined:
+                found[self.named(f"q_{j}")] = q[j - 1]
         return {name: float(value) for name, value in found.items()}
 
     # ---- frames ---------------------------------------------------------------------------

@@ -286,7 +286,7 @@ def value_of(*patterns: str) -> Callable[[Value], Value]:
 
 
 def leg_value(stem: str) -> tuple[Value, int] | None:
-    """The function for a name without its leg type's suffix, and the number in it."""
+    """The function for a name without its leg type, and the number in it."""
     for pattern, function in LEG:
         match = re.fullmatch(pattern, stem)
         if match:
@@ -389,11 +389,6 @@ def _j_group(f: Facts, j: int) -> Any:
 
 @value_of(r"trace_J_(\d+)")
 def _trace(f: Facts, j: int) -> Any:
-    return 0.5 * np.trace(f.reference_tensor(j))
-
-
-@value_of(r"trace_J_group_(\d+)")
-def _trace_group(f: Facts, j: int) -> Any:
     return 0.5 * np.trace(_j_group(f, j))
 
 
@@ -417,7 +412,7 @@ def _py(f: Facts, j: int) -> Any:
 
 def _projected(f: Facts, j: int) -> Any:
     """What the inverse kinematics of joint j projects on directions fixed in link j - 1."""
-    used = f.names.defined[f"px_{j}{f.names.suffix}"].uses
+    used = [f.names.stem(n) for n in f.names.defined[f.names.named(f"px_{j}")].uses]
     platform_axis = f.leg.platform_joint.axis_platform
     if any(name.startswith("end_p") for name in used) and platform_axis is not None:
         return f.platform.rotation @ np.array(platform_axis)  # the joint turns an axis into place
@@ -560,7 +555,7 @@ def _b(f: Facts, j: int) -> Any:
     return cross_matrix(f.alpha(j)) + square(f.omega(j))
 
 
-@value_of(r"a_o(\d+)")
+@value_of(r"a_o_(\d+)")
 def _a_o(f: Facts, j: int) -> Any:
     return f.joint_point(j)[1]
 
@@ -698,12 +693,12 @@ def _composite_tensor(f: Facts, j: int) -> Any:
     return total + f.reference_tensor(f.tip_body) if f.tip_body else total
 
 
-@value_of(r"P_c(\d+)")
+@value_of(r"P_c_(\d+)")
 def _composite_force(f: Facts, j: int) -> Any:
     return sum(f.mass(i) * _moves(f, j, f.motion.centre[i - 1]) for i in _beyond(f, j))
 
 
-@value_of(r"L_c(\d+)")
+@value_of(r"L_c_(\d+)")
 def _own_effort(f: Facts, j: int) -> Any:
     return _effort(f, j, f.group(j))
 
@@ -732,7 +727,7 @@ def _inertia_with(k: int) -> Value:
 
 
 for _number in range(1, 10):
-    value_of(rf"L_c(\d+)_{_number}")(_effort_about(_number))
+    value_of(rf"L_c_(\d+)_{_number}")(_effort_about(_number))
     value_of(rf"D_(\d+)_{_number}")(_inertia_with(_number))
 
 

@@ -153,15 +153,11 @@ class Examination:
     def leg_line(self, equation: Equation, index: int, names: Names) -> None:
         where = f"leg {index}: {equation.name}"
         self.line(equation, names, where)
-        stem = (
-            re.sub(rf"({names.suffix})+(?=$|_o$|_part$)", "", equation.name)
-            if names.suffix
-            else (equation.name)
-        )
-        coefficient = re.fullmatch(r"d\d*_(?!\d)(.*)", stem)
+        stem = names.stem(equation.name)
+        coefficient = re.fullmatch(r"d(?:alpha|y_\d+)?_(?!\d)(.*)", stem)
         bare = (coefficient.group(1) if coefficient else stem).removesuffix("_o")
         if CONSISTENT_ONLY.fullmatch(bare):
-            self.account.consistent.add(equation.name)
+            self.account.consistent.add(equation.id)
             return
         if bare == "U":
             bare, stem = "c", "c_o"  # up to its sign: see linear_forms
@@ -169,7 +165,7 @@ class Examination:
         if found is None:
             self.account.faults.append(f"{where}: no independent value, and not listed as such")
             return
-        self.account.independent.add(equation.name)
+        self.account.independent.add(equation.id)
         if stem == bare:
             function, number = found
             self.account.compare(
@@ -215,11 +211,7 @@ class Examination:
     def of_a_leg(self, equation: Equation) -> None:
         """A quantity per leg in a chapter on the platform: columns of H, rows of extras."""
         for index, names in enumerate(self.main.legs):
-            own = equation.name.endswith(names.suffix) and all(
-                not equation.name.endswith(other.suffix) or len(other.suffix) <= len(names.suffix)
-                for other in self.main.legs
-            )
-            if own:
+            if equation.id.startswith(f"{names.leg_type}-"):
                 self.leg_line(equation, index, names)
 
     def _components(self, block: str) -> list[int]:
@@ -234,8 +226,10 @@ class Examination:
         """Each quantity of a leg that depends on the acceleration, at all accelerations."""
         names = self.main.legs[index]
         known: dict[Any, LinearForm] = {}
-        a_p = VectorSymbol(f"a_p{names.suffix}")
-        extras = [sp.Symbol(f"ydd_{j}{names.suffix}", real=True) for j in self.facts[index].extras]
+        a_p = VectorSymbol(names.named("a_p"))
+        extras = {
+            sp.Symbol(names.named(f"ydd_{j}"), real=True): j for j in self.facts[index].extras
+        }
         unknowns = [a_p, VectorSymbol("alpha"), *extras]
         for chapter in self.derivation.chapters:
             for equation in chapter.equations if chapter.leg_type == names.leg_type else ():
@@ -246,16 +240,18 @@ class Examination:
                 if not dependent or equation.lhs == a_p or isinstance(equation.lhs, Tensor):
                     continue
                 form = linear_form(equation.rhs, unknowns, known)
-                known[equation.lhs] = self._named(index, names, equation, form, a_p)
+                marks = {a_p: "", VectorSymbol("alpha"): "alpha"}
+                marks |= {unknown: f"y_{j}" for unknown, j in extras.items()}
+                known[equation.lhs] = self._named(index, names, equation, form, marks)
                 self._at_all(index, equation.name, known[equation.lhs])
 
     def _named(
-        self, index: int, names: Names, equation: Equation, form: LinearForm, a_p: Any
+        self, index: int, names: Names, equation: Equation, form: LinearForm, marks: Any
     ) -> LinearForm:
         """The form with the derivation's names for its parts, where it has them."""
         parts = {}
-        for k, (unknown, value) in enumerate(form.coefficients.items()):
-            name = f"d{'' if unknown == a_p else k}_{equation.name}"
+        for unknown, value in form.coefficients.items():
+            name = names.named(f"d{marks[unknown]}_{names.stem(equation.name)}")
             parts[unknown] = self._checked(index, names, name, value)
         remainder = self._checked(index, names, f"{equation.name}_o", form.remainder)
         return LinearForm(parts, remainder)
@@ -270,8 +266,7 @@ class Examination:
 
     def _at_all(self, index: int, name: str, form: LinearForm) -> None:
         names = self.main.legs[index]
-        stem = re.sub(rf"({names.suffix})+(?=$|_o$|_part$)", "", name) if names.suffix else name
-        found = leg_value(stem)
+        found = leg_value(names.stem(name))
         if found is None:
             return
         function, number = found
@@ -305,7 +300,7 @@ def test_every_quantity(name: str) -> None:
     assert not account.faults, "\n".join(account.faults[:20])
     assert account.worst < TOLERANCE
     assert not account.independent & account.consistent
-    rest = {found for found in account.consistent if not OF_CHOICE.match(found)}
+    rest = {found for found in account.consistent if not OF_CHOICE.match(found.partition("-")[2])}
     share = len(account.independent) / len(account.independent | rest)
     assert share > LEAST_SHARE, sorted(rest)
 
@@ -321,7 +316,7 @@ def test_every_quantity_with_friction_springs_and_motors(name: str, seed: int) -
     spec = with_effects(drawn(name), np.random.default_rng(seed), share=1.0)
     account = Examination(checked(spec), seed).run()
     assert not account.faults, "\n".join(account.faults[:20])
-    assert any(found.startswith(("friction", "spring", "rotor")) for found in account.independent)
+    assert any(re.search("-(friction|spring|rotor)", found) for found in account.independent)
 
 
 @pytest.mark.parametrize("name", REFUSED)

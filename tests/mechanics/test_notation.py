@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from pne_sym import manipulators
-from pne_sym.derivation import Derivation
+from pne_sym.derivation import Derivation, full_name
 from pne_sym.mechanics.derive import derive
 from pne_sym.model.errors import SpecError
 
@@ -19,7 +19,8 @@ def derived(name: str, **symbols: str) -> Derivation:
 
 
 def latex(name: str, quantity: str, **symbols: str) -> str:
-    return derived(name, **symbols).notation[quantity].latex
+    found = derived(name, **symbols)
+    return found.notation[full_name(found, quantity)].latex
 
 
 @pytest.mark.parametrize(
@@ -47,7 +48,8 @@ def test_scalars_are_plain_vectors_and_tensors_bold(
 def test_dots_and_circles_follow() -> None:
     notation = derived("hybrid_3prps", q_3="L_s", omega_2="W", mu_2="k").notation
     found = {
-        name: notation[name].latex for name in ("qd_3", "qdd_3", "qdd_3_o", "omega_2", "mu_2_o")
+        name: notation[f"prps_{name}"].latex
+        for name in ("qd_3", "qdd_3", "qdd_3_o", "omega_2", "mu_2_o")
     }
     assert found == {
         "qd_3": r"\dot{L}_{s}",
@@ -60,19 +62,26 @@ def test_dots_and_circles_follow() -> None:
 
 def test_a_derivative_may_have_a_symbol_of_its_own() -> None:
     notation = derived("fivebar_prismatic", q_1=r"\theta", qd_1="W").notation
-    assert (notation["qd_1"].latex, notation["qdd_1"].latex) == ("W", r"\ddot{\theta}")
+    assert (notation["rpr_qd_1"].latex, notation["rpr_qdd_1"].latex) == ("W", r"\ddot{\theta}")
 
 
 def test_extra_coordinates() -> None:
-    notation = derived("planar_redundant", y_1_extra_prrr="D").notation
-    names = ("y_1_extra_prrr", "yd_1_prrr", "ydd_1_prrr")
+    notation = derived("planar_redundant", prrr_y_1_extra="D").notation
+    names = ("prrr_y_1_extra", "prrr_yd_1", "prrr_ydd_1")
     assert [notation[name].latex for name in names] == ["D", r"\dot{D}", r"\ddot{D}"]
 
 
 def test_legs_of_different_types_may_share() -> None:
     """As they share the engine's symbols: they never meet in a chapter."""
-    notation = derived("planar_mixed", q_2_rpr="L", q_2_prr="L").notation
-    assert notation["q_2_rpr"].latex == notation["q_2_prr"].latex == "L"
+    notation = derived("planar_mixed", rpr_q_2="L", prr_q_2="L").notation
+    assert notation["rpr_q_2"].latex == notation["prr_q_2"].latex == "L"
+
+
+def test_the_leg_type_may_be_left_out_where_it_is_clear_or_stand_behind() -> None:
+    notation = derived("planar_mixed", q_2_rpr="L").notation
+    assert notation["rpr_q_2"].latex == "L"
+    with pytest.raises(SpecError, match=r"symbols\.q_2: no quantity 'q_2' \(did you mean \w+_q_2"):
+        derived("planar_mixed", q_2="L")
 
 
 def test_code_does_not_change() -> None:
@@ -91,10 +100,13 @@ def test_code_does_not_change() -> None:
         ({"q_7": "L"}, r"symbols\.q_7: no quantity 'q_7' \(did you mean q_\d"),
         ({"wn_1": "L"}, r"symbols\.wn_1: no quantity"),
         ({"q_2": "M_p"}, r"symbols\.q_2: M_\{p\} is the symbol of platform_mass"),
-        ({"q_2": "q_1"}, r"symbols\.q_2: q_\{1\} is the symbol of q_1 as well; expected another"),
-        ({"q_1": "L", "q_2": "L"}, r"symbols\.q_1: L is the symbol of q_2"),
-        ({"e_1": "s", "e_2": "s"}, r"symbols\.e_1: .* is the symbol of e_2"),
-        ({"rho_1": "S"}, r"symbols\.rho_1: .* is the symbol of S"),
+        (
+            {"q_2": "q_1"},
+            r"symbols\.q_2: q_\{1\} is the symbol of rps_q_1 as well; expected another",
+        ),
+        ({"q_1": "L", "q_2": "L"}, r"symbols\.q_1: L is the symbol of rps_q_2"),
+        ({"e_1": "s", "e_2": "s"}, r"symbols\.e_1: .* is the symbol of rps_e_2"),
+        ({"rho_1": "S"}, r"symbols\.rho_1: .* is the symbol of rps_S"),
         ({"Q": "E"}, r"symbols\.Q: .*E.* means something in every report"),
         ({"q_2": r"\tau"}, r"symbols\.q_2: .*tau means something"),
         ({"q_2": "i"}, r"symbols\.q_2: i means something"),
@@ -110,13 +122,13 @@ def test_refused(symbols: dict[str, str], message: str) -> None:
 
 def test_a_symbol_is_free_when_its_holder_has_another() -> None:
     found: Any = derived("fivebar_revolute", link_x_1="c", c="F_c").notation
-    assert found["link_x_1"].latex == r"\mathbf{c}"
-    with pytest.raises(SpecError, match=r"symbols\.link_x_1: .* is the symbol of c as well"):
+    assert found["rrr_link_x_1"].latex == r"\mathbf{c}"
+    with pytest.raises(SpecError, match=r"symbols\.link_x_1: .* is the symbol of rrr_c as well"):
         derived("fivebar_revolute", link_x_1="c")
 
 
 def test_axes_that_are_one_vector_may_share() -> None:
     notation = derived("hybrid_3prps", e_1="k", e_2="k").notation
-    assert notation["e_1"].latex == notation["e_2"].latex == r"\mathbf{k}"
-    with pytest.raises(SpecError, match="is the symbol of e_4"):  # parallel at home only
+    assert notation["prps_e_1"].latex == notation["prps_e_2"].latex == r"\mathbf{k}"
+    with pytest.raises(SpecError, match="is the symbol of rrrrrr_e_4"):  # parallel at home only
         derived("hexapod_6x6r", e_1="k", e_4="k")

@@ -30,12 +30,14 @@ def test_lever_arms_do_not_depend_on_origins(name: str) -> None:
 
 
 def size_of(spec: Manipulator) -> Equation:
-    (found,) = (e for e in derive(spec).equations() if e.name == "size")
+    (found,) = (e for e in derive(spec).equations() if e.id.endswith("-size"))
     return found
 
 
 def test_links_are_live_and_struts_are_those_of_home() -> None:
-    assert {"d_2", "d_3", "size_0"} <= set(size_of(manipulators.load("planar_3rrr")).uses)
+    assert {"rrr_d_2", "rrr_d_3", "rrr_size_0"} <= set(
+        size_of(manipulators.load("planar_3rrr")).uses
+    )
     assert size_of(manipulators.load("stewart")).rhs == pytest.approx(0.8, rel=0.05)
 
 
@@ -44,13 +46,13 @@ def test_longer_links_have_a_longer_measure(times: float) -> None:
     """What is singular is told relative to the links as they are, not as they were."""
     spec = manipulators.load("planar_3rrr")
     leg, size = spec.legs[0], size_of(spec)
-    offsets = {"d_2": leg.joints[1].offset, "d_3": leg.platform_joint.offset}
-    (least,) = (float(e.rhs) for e in derive(spec).equations() if e.name == "size_0")
+    offsets = {"rrr_d_2": leg.joints[1].offset, "rrr_d_3": leg.platform_joint.offset}
+    (least,) = (float(e.rhs) for e in derive(spec).equations() if e.id == "rrr-size_0")
 
     def at(scale: float) -> float:
         vectors = {name: scale * np.array(offset) for name, offset in offsets.items()}
-        axis = {"e_1": np.array([0.0, 0.0, 1.0])}
-        return float(evaluate(size.rhs, {**vectors, **axis, "size_0": least}))
+        axis = {"rrr_e_1": np.array([0.0, 0.0, 1.0])}
+        return float(evaluate(size.rhs, {**vectors, **axis, "rrr_size_0": least}))
 
     assert at(times) == pytest.approx(times * at(1.0), rel=1e-5)
     assert at(0.0) > 0.0
@@ -109,7 +111,7 @@ def completions(spec: Manipulator) -> list[tuple[Auxiliary, ...]]:
     for leg_type in leg_types(spec):
         book = Book()
         book.chapter("G", "", "")
-        g = build_geometry(book, leg_type, "", planar=False)
+        g = build_geometry(book, leg_type, planar=False)
         g = with_size(book, g, home_lengths(spec, leg_type))
         found.append(completion_at_home(spec, g))
     return found

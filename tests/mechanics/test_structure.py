@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from pne_sym.mechanics.derive import derive
-from pne_sym.mechanics.structure import structure_key
+from pne_sym.model.leg_types import structure_key
 from pne_sym.model.manipulator import Leg, Vector3
 from tests.models import catalogue
 from tests.oracle.mechanisms import mechanism

@@ -12,6 +12,7 @@ import pytest
 
 from pne_sym import manipulators
 from pne_sym.model.errors import SpecError
+from pne_sym.model.manipulator import Manipulator
 from pne_sym.model.reader import from_mapping, read_spec, to_full_form
 
 REFERENCE = Path(__file__).parents[1] / "data" / "reference_specs"
@@ -20,6 +21,11 @@ NAMES = sorted(path.stem for path in REFERENCE.glob("*.json"))
 
 def reference(name: str) -> Any:
     return json.loads((REFERENCE / f"{name}.json").read_text())
+
+
+def unnamed(manipulator: Manipulator) -> Manipulator:
+    """Without the names of leg types, which the full form of the references does not have."""
+    return replace(manipulator, legs=tuple(replace(leg, type="") for leg in manipulator.legs))
 
 
 def test_names() -> None:
@@ -31,13 +37,13 @@ def test_names() -> None:
 def test_equals_the_reference(name: str) -> None:
     found = manipulators.load(name)
     expected = from_mapping(reference(name), "reference")
-    assert replace(found, title="", symbols=()) == replace(expected, title="")
+    assert replace(unnamed(found), title="", symbols=()) == replace(expected, title="")
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_reading_changes_no_digit(name: str) -> None:
     """Only structural zeros are snapped: all else stands as in the reference file."""
-    found = replace(manipulators.load(name), symbols=())
+    found = replace(unnamed(manipulators.load(name)), symbols=())
     snapped = differences(to_full_form(found), reference(name))
     snapped.pop(".title")
     assert all(found == 0.0 and abs(given) < 1e-16 for found, given in snapped.values())

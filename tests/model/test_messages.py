@@ -119,7 +119,7 @@ SPATIAL: list[tuple[str, Any, str]] = [
     ("home.q", [[0.5, 0.5]], "home.q[0]: 2 numbers; expected 1 numbers, one for each joint"),
     ("home.q", [1.5], "home: the loops do not close at X: legs[0] has a gap of 1 m; expected"),
     # leg types
-    ("legs.0.type", "lift", "legs[0].type: value 'lift'; expected the name of a leg type: a table"),
+    ("legs.0.type", "Lift", "legs[0].type: leg type named 'Lift'; expected a lower-case letter"),
     ("leg_types", {"Bad Name": {}}, "leg type named 'Bad Name'; expected a lower-case letter"),
     ("leg_types", 1, "leg_types: value 1; expected a table"),
 ]

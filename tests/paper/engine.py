@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from pne_sym.derivation import Derivation, Frame, ParameterField
+from pne_sym.derivation import Derivation, Frame, ParameterField, full_name
 from pne_sym.vector import TensorSymbol
 from pne_sym.vector.evaluate import evaluate
 from tests.models import at_path, bundle, catalogue
@@ -27,7 +27,7 @@ def leg_quantities(sample: Sample, form: Any, leg: int, wanted: tuple[str, ...])
         sample: the state.
         form: full form of the sample's manipulator.
         leg: position of the leg.
-        wanted: names.
+        wanted: names, without the leg type.
     """
     derivation = bundle(catalogue(sample.manipulator.name)).derivation
     scalars = _scalars(derivation, sample, form, leg)
@@ -37,7 +37,7 @@ def leg_quantities(sample: Sample, form: Any, leg: int, wanted: tuple[str, ...])
         known = _Leg(derivation, scalars, turns)
         turns = {name: (known[c.name], known[s.name]) for name, (c, s) in turning.items()}
     known = _Leg(derivation, scalars, turns)
-    return {name: known[name] for name in wanted}
+    return {name: known[full_name(derivation, name)] for name in wanted}
 
 
 class _Leg(dict[str, Any]):

@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass, field
 
 _ID = re.compile(r'<a id="([^"]+)"></a>\*\*\(\1\)\*\* (.*)')
+_LEGS = re.compile(r"Legs? ([\d, to]+), of type .*; index \$`(.+?)`\$ in sums")
 _OF_LEG = re.compile(r" of an? (\S+( \d+)?) leg$")
 Row = tuple[str, ...]
 
@@ -97,7 +98,9 @@ def read(text: str) -> Document:
         elif line.startswith("### "):
             about = _OF_LEG.search(line)
             chapter = about[1] if about else ""
-        elif section.title and (match := re.match(r"Legs? (.+?); index \$`(.+?)`\$ in sums", line)):
+        elif section.title and (
+            match := re.match(r"Legs? ([\d, to]+), of type .*; index \$`(.+?)`\$ in sums", line)
+        ):
             section.legs, section.index = _numbers(match[1]), match[2]
         elif line.startswith("| "):
             _row(made, section, lines, k)

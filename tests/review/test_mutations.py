@@ -44,15 +44,15 @@ def swap(first: str, second: str):
 
 GRAVITY = VectorSymbol("g")
 MUTATIONS = {
-    "a sign in the loop": ("S", flip_last_term, "M"),
-    "the Coriolis term dropped": ("bias", drop_last_term, "Z"),
-    "a swapped index": ("qd_2", swap("w_2", "w_1"), "Z"),
-    "swapped reciprocal vectors": ("G_o", swap("w_1", "w_2"), "Z"),
-    "a sign of a moment": ("mu_2_o", flip_last_term, "Z"),
-    "a coefficient transposed": ("d_alpha_1", lambda rhs: Outer(*rhs.args[::-1]), "M"),
-    "a lumped tensor without a body": ("J_group_2", lambda rhs: rhs.args[0], "M"),
-    "a factor two": ("omega_1", lambda rhs: 2 * rhs, "Z"),
-    "an angle's sine": ("s_2", lambda rhs: -rhs, "M"),
+    "a sign in the loop": ("ups_S", flip_last_term, "M"),
+    "the Coriolis term dropped": ("ups_bias", drop_last_term, "Z"),
+    "a swapped index": ("ups_qd_2", swap("ups_w_2", "ups_w_1"), "Z"),
+    "swapped reciprocal vectors": ("ups_G_o", swap("ups_w_1", "ups_w_2"), "Z"),
+    "a sign of a moment": ("ups_mu_2_o", flip_last_term, "Z"),
+    "a coefficient transposed": ("ups_d_alpha_1", lambda rhs: Outer(*rhs.args[::-1]), "M"),
+    "a lumped tensor without a body": ("ups_J_group_2", lambda rhs: rhs.args[0], "M"),
+    "a factor two": ("ups_omega_1", lambda rhs: 2 * rhs, "Z"),
+    "an angle's sine": ("ups_s_2", lambda rhs: -rhs, "M"),
 }
 
 
@@ -81,9 +81,11 @@ def test_the_entry_with_the_largest_difference_is_told() -> None:
 
 @pytest.mark.only_in_all
 def test_of_two_mistakes_both_are_placed_and_the_first_told_first() -> None:
-    found = change("stewart", {"Q": with_rhs(lambda r: 2 * r), "S_dot": with_rhs(flip_last_term)})
-    assert [e.name for e in found.origins] == ["S_dot", "Q"]
-    assert found.to_dict()["first_difference"] == of(found, "S_dot").id
+    found = change(
+        "stewart", {"ups_Q": with_rhs(lambda r: 2 * r), "ups_S_dot": with_rhs(flip_last_term)}
+    )
+    assert [e.name for e in found.origins] == ["ups_S_dot", "ups_Q"]
+    assert found.to_dict()["first_difference"] == of(found, "ups_S_dot").id
 
 
 @pytest.mark.only_in_all
@@ -91,18 +93,18 @@ def test_a_wrong_other_form_is_found_though_the_definition_is_right() -> None:
     def spoilt(e):
         return replace(e, forms=(*e.forms, -e.rhs))
 
-    found = change("stewart", {"bias": spoilt})
-    assert [e.name for e in found.origins] == ["bias"]
-    assert "in the form" in of(found, "bias").note
+    found = change("stewart", {"ups_bias": spoilt})
+    assert [e.name for e in found.origins] == ["ups_bias"]
+    assert "in the form" in of(found, "ups_bias").note
 
 
 def test_a_condition_that_changed_is_found() -> None:
     def spoilt(e):
         return replace(e, conditions=tuple(replace(c, value=-c.value) for c in e.conditions))
 
-    found = change("stewart", {"rho2_1": spoilt})
-    assert [e.name for e in found.origins] == ["rho2_1"]
-    assert "condition" in of(found, "rho2_1").note
+    found = change("stewart", {"ups_rho2_1": spoilt})
+    assert [e.name for e in found.origins] == ["ups_rho2_1"]
+    assert "condition" in of(found, "ups_rho2_1").note
 
 
 def test_a_swapped_index_of_an_output_is_found() -> None:
@@ -126,17 +128,19 @@ def test_a_given_vector_that_changed_is_found() -> None:
     derivation = bundle(manipulator).derivation
     givens = tuple(
         replace(g, components=(g.components[1], g.components[0], g.components[2]))
-        if g.symbol.name == "rho_2"
+        if g.symbol.name == "ups_rho_2"
         else g
         for g in derivation.givens
     )
     found = compare(version(manipulator), compiled(manipulator, replace(derivation, givens=givens)))
-    assert [(e.id, e.name) for e in found.origins] == [("given", "rho_2")]
+    assert [(e.id, e.name) for e in found.origins] == [("given", "ups_rho_2")]
 
 
 @pytest.mark.parametrize(
     ("model", "name"),
-    sampled([("delta", "Q"), ("planar_3rrr", "omega_2"), ("tripod_3rps", "gamma_c1")], 3),
+    sampled(
+        [("delta", "rus_Q"), ("planar_3rrr", "rrr_omega_2"), ("tripod_3rps", "rps_gamma_c1")], 3
+    ),
 )
 def test_other_structures(model: str, name: str) -> None:
     found = change(model, {name: with_rhs(lambda rhs: sp.Integer(2) * rhs)})
@@ -147,7 +151,7 @@ def test_a_mistake_outside_the_equations_is_told_as_such() -> None:
     """The derivation is right, the program is not: its first statement that differs is told."""
     manipulator = catalogue("stewart")
     right = bundle(manipulator)
-    wrong = compiled(manipulator, rewritten(right.derivation, {"U": with_rhs(lambda r: -r)}))
+    wrong = compiled(manipulator, rewritten(right.derivation, {"ups_U": with_rhs(lambda r: -r)}))
     assert wrong.bundle is not None
     lowered = from_bundle("after", Bundle(manipulator, right.derivation, wrong.bundle.program))
     found = compare(version(manipulator), lowered)
@@ -155,14 +159,14 @@ def test_a_mistake_outside_the_equations_is_told_as_such() -> None:
     assert not found.origins
     assert any("outside them" in note for note in found.notes)
     assert found.statement is not None
-    assert found.statement.equation == right.derivation.definition("U").id
+    assert found.statement.equation == right.derivation.definition("ups_U").id
     assert diff_text.verdict(found).startswith(
-        f"different: the lowering, first at {found.statement.equation} (U"
+        f"different: the lowering, first at {found.statement.equation} (ups_U"
     )
 
 
 def test_a_cross_product_the_wrong_way_round() -> None:
-    found = change("stewart", {"H_a_3": with_rhs(lambda rhs: Cross(*rhs.args[::-1]))})
-    assert [e.name for e in found.origins] == ["H_a_3"]
+    found = change("stewart", {"ups_H_a_3": with_rhs(lambda rhs: Cross(*rhs.args[::-1]))})
+    assert [e.name for e in found.origins] == ["ups_H_a_3"]
     assert block(found, "H") is Verdict.DIFFERENT
     assert block(found, "M") is block(found, "Z") is Verdict.IDENTICAL

@@ -38,18 +38,20 @@ def skewed(rhs: Any) -> Any:
 
 
 REWRITINGS = {
-    "a reordered sum": {"mu_2_o": with_rhs(reordered), "S": with_rhs(reordered)},
-    "the other form": {"bias": as_first_form, "phi_3": as_first_form},
-    "tensors for cross products": {"phi_3_o": with_rhs(skewed)},
+    "a reordered sum": {"ups_mu_2_o": with_rhs(reordered), "ups_S": with_rhs(reordered)},
+    "the other form": {"ups_bias": as_first_form, "ups_phi_3": as_first_form},
+    "tensors for cross products": {"ups_phi_3_o": with_rhs(skewed)},
     "a root taken apart": {
-        "root_1": with_rhs(
+        "ups_root_1": with_rhs(
             lambda rhs: (
                 rhs.args[0]
-                * sp.sqrt(sp.Symbol("px_1", real=True) ** 2 + sp.Symbol("py_1", real=True) ** 2)
+                * sp.sqrt(
+                    sp.Symbol("ups_px_1", real=True) ** 2 + sp.Symbol("ups_py_1", real=True) ** 2
+                )
             )
         )
     },
-    "another title": {"U": lambda e: replace(e, title="another title")},
+    "another title": {"ups_U": lambda e: replace(e, title="another title")},
 }
 
 
@@ -87,13 +89,13 @@ def with_temporary(derivation: Derivation, name: str, part: int) -> Derivation:
 def test_another_temporary_is_no_difference() -> None:
     manipulator = catalogue("stewart")
     derivation = bundle(manipulator).derivation
-    after = compiled(manipulator, with_temporary(derivation, "bias", 1))
+    after = compiled(manipulator, with_temporary(derivation, "ups_bias", 1))
     found = compare(version(manipulator), after)
     assert found.equal
-    assert verdicts(found) == {"bias_part": Verdict.ADDED, "bias": Verdict.EQUAL}
+    assert verdicts(found) == {"ups_bias_part": Verdict.ADDED, "ups_bias": Verdict.EQUAL}
     back = compare(after, version(manipulator))
     assert back.equal
-    assert verdicts(back) == {"bias_part": Verdict.REMOVED, "bias": Verdict.EQUAL}
+    assert verdicts(back) == {"ups_bias_part": Verdict.REMOVED, "ups_bias": Verdict.EQUAL}
 
 
 def renamed(derivation: Derivation, old: str, new: str) -> Derivation:
@@ -130,7 +132,7 @@ def renamed(derivation: Derivation, old: str, new: str) -> Derivation:
 
 
 @pytest.mark.parametrize(
-    ("old", "new"), sampled([("bias", "beta"), ("d_alpha_2", "C_2"), ("Z_p", "Z_own")], 3)
+    ("old", "new"), sampled([("ups_bias", "beta"), ("ups_d_alpha_2", "C_2"), ("Z_p", "Z_own")], 3)
 )
 def test_a_renamed_quantity_is_matched_by_its_values(old: str, new: str) -> None:
     manipulator = catalogue("stewart")

@@ -12,7 +12,7 @@ from pne_sym.backends.report.names import leg_indices, leg_title
 from pne_sym.backends.report.view import LegView, Table
 from pne_sym.backends.report.words import METHODS
 from pne_sym.derivation import Derivation, LegTypeInfo, ParameterField
-from pne_sym.model.manipulator import ZERO3, Joint, Vector3
+from pne_sym.model.manipulator import ZERO3, Joint, Leg, Vector3
 
 _TOLERANCE = 1e-9
 _AXES = "xyz"
@@ -28,7 +28,7 @@ def _leg(bundle: Bundle, info: LegTypeInfo, given: GivenWriter) -> LegView:
     joints = model_joints(bundle.manipulator, info)
     return LegView(
         leg_title(info),
-        _which(info, leg_indices(derivation)[info.name]),
+        _which(info, bundle.manipulator.legs, leg_indices(derivation)[info.name]),
         table(
             ("Joint", "Kind", "Role", "Axis", "To the axis before", "Offset", "Link"),
             [_joint_row(joints, j) for j in range(len(joints))],
@@ -42,10 +42,15 @@ def _leg(bundle: Bundle, info: LegTypeInfo, given: GivenWriter) -> LegView:
     )
 
 
-def _which(info: LegTypeInfo, letter: str) -> str:
+def _which(info: LegTypeInfo, legs: Sequence[Leg], letter: str) -> str:
     """Which legs are of a type, and their index in sums."""
     word = "Legs" if len(info.indices) > 1 else "Leg"
-    return f"{word} {ranges([i + 1 for i in info.indices])}; index {inline(letter)} in sums."
+    numbers = f"{ranges([i + 1 for i in info.indices])}"
+    called = ", ".join(f"{i + 1} is `{legs[i].name}`" for i in info.indices if legs[i].name)
+    return (
+        f"{word} {numbers}, of type `{info.name}`{'; ' * bool(called)}{called}; "
+        f"index {inline(letter)} in sums."
+    )
 
 
 def ranges(numbers: Sequence[int]) -> str:
@@ -75,7 +80,7 @@ def _joint_row(joints: Sequence[Joint], at: int) -> tuple[str, ...]:
         if holds
     ]
     return (
-        str(at + 1),
+        f"{at + 1}" + (f" `{joint.name}`" if joint.name else ""),
         joint.kind.word,
         ", ".join(roles) or "passive",
         _axis(joint.axis),
