@@ -63,6 +63,10 @@ targets: $(VENV)/targets.stamp ## Test all extension modules, array-API modules 
 printed: $(VENV)/test.stamp ## Compute all models from the text of their reports, with other numbers too
 	$(BIN)/python -m pytest $(PYTEST_ARGS) -m "" tests/printed
 
+.PHONY: robots
+robots: $(VENV)/test.stamp ## Generate the robots of docs/robots.md and test their published properties
+	$(BIN)/python -m pytest -n 0 -m "" tests/robots
+
 .PHONY: bench
 bench: $(VENV)/core.stamp ## Measure the generated code and the generator
 	$(BIN)/python bench/c_speed.py

@@ -113,7 +113,7 @@ def _found(entry: Entry, loops: Loops, X: Array) -> tuple[Array, Array]:
     """X, and q of the usual closure of every leg."""
     found = all_closures(loops, X)
     q = np.concatenate([leg[0] for leg in found])
-    if max(loops.gaps(X, q)) > TOLERANCE:
+    if max(loops.gaps(X, q)) > _exact(X, q):
         new_x, q = all_closed(loops, X, q)  # the legs restrict the platform: the pose gives way
         moved = float(np.abs(new_x - X).max())
         if max(loops.gaps(new_x, q)) > TOLERANCE or moved > REACH:
@@ -152,7 +152,7 @@ def _closed(entry: Entry, loops: Loops, X: Array, q: Array) -> tuple[Array, Arra
     given, q = q, principal(loops.joints, q.tolist())
     q[loops.extra] = X[loops.size :]
     gaps = loops.gaps(X, q)
-    exact = CLOSED * max(1.0, float(np.abs(X).max()), float(np.abs(q).max()))
+    exact = _exact(X, q)
     if max(gaps) <= exact:
         return X, q
     new_x, new_q = X, legs_closed(loops, X, q)
@@ -175,6 +175,11 @@ def _closed(entry: Entry, loops: Loops, X: Array, q: Array) -> tuple[Array, Arra
             stacklevel=2,
         )
     return new_x, principal(loops.joints, new_q.tolist())
+
+
+def _exact(X: Array, q: Array) -> float:
+    """The gap that counts as none."""
+    return CLOSED * max(1.0, float(np.abs(X).max()), float(np.abs(q).max()))
 
 
 def principal(joints: list[Joint], q: list[float]) -> Array:

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import itertools
 import math
-import warnings
 from collections.abc import Iterator
 
 from pne_sym.mechanics.mobility import mobility
-from pne_sym.model.errors import SpecError, SpecNote
+from pne_sym.model.errors import SpecError
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.starter.choose import Shape
 from pne_sym.starter.notation import SOURCE, LegGroup, is_guide, is_marked
@@ -20,7 +19,7 @@ _MOST_NUMBERS = 20000
 _FEW = 4
 
 
-def check_drives(manipulator: Manipulator, groups: tuple[LegGroup, ...]) -> None:
+def check_drives(manipulator: Manipulator, groups: tuple[LegGroup, ...]) -> str:
     """Refuse what has not as many actuators as degrees of freedom; tell redundant ones.
 
     Raises:
@@ -28,6 +27,15 @@ def check_drives(manipulator: Manipulator, groups: tuple[LegGroup, ...]) -> None
             them, or legs that hold the platform in this arrangement.
     """
     found = mobility(manipulator)
+    if found.overconstrained or not found.freedoms:
+        raise SpecError(
+            SOURCE,
+            "",
+            f"overconstrained: the legs put {found.constraints} constraints on the platform, of "
+            f"which {found.overconstrained} follow from the others, and leave "
+            f"{_count(found.freedoms, 'degree')} of freedom",
+            "legs with more joints, or a specification written by hand, see docs/robots.md",
+        )
     freedoms = found.freedoms - found.passive
     told = f"{_count(found.drives, 'actuator')} for {_count(freedoms, 'degree')} of freedom"
     if found.drives < freedoms:
@@ -40,7 +48,7 @@ def check_drives(manipulator: Manipulator, groups: tuple[LegGroup, ...]) -> None
             "other actuated joints, or other legs",
         )
     if found.drives == freedoms:
-        return
+        return ""
     if found.constraints and not is_marked(groups) and not any(is_guide(g, groups) for g in groups):
         raise SpecError(
             SOURCE,
@@ -49,11 +57,7 @@ def check_drives(manipulator: Manipulator, groups: tuple[LegGroup, ...]) -> None
             "platform, more than such machines have by their parallel and common axes",
             "a specification written by hand, see docs/robots.md",
         )
-    warnings.warn(
-        f"{SOURCE}: {told}: redundantly actuated, as legs that are alike have as many each",
-        SpecNote,
-        stacklevel=2,
-    )
+    return f"{SOURCE}: {told}: redundantly actuated, as legs that are alike have as many each"
 
 
 def _count(number: int, thing: str) -> str:

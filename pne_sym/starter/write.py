@@ -5,12 +5,13 @@ from __future__ import annotations
 import os
 import tempfile
 import textwrap
+import warnings
 from collections.abc import Iterator
 from pathlib import Path
 
 from pne_sym.mechanics.mobility import mobility
 from pne_sym.model.entry import Entry, nearest
-from pne_sym.model.errors import SpecError, show
+from pne_sym.model.errors import SpecError, SpecNote, show
 from pne_sym.model.legs import is_plane
 from pne_sym.model.manipulator import Manipulator, Space
 from pne_sym.model.names import read_name
@@ -55,14 +56,16 @@ def write_starter(
         raise SpecError(where, "", "the file exists", "another name, or --force to replace it")
     text = starter_text(name, legs, space, geometry)
     manipulator = from_text(text, SUFFIX, where)
+    told = check_drives(manipulator, parse_legs(legs))
     _check_derivable(manipulator)
-    check_drives(manipulator, parse_legs(legs))
     try:
         _write(path, text, replace=force)
     except FileExistsError:
         raise SpecError(where, "", "the file exists", "another name, or --force") from None
     except OSError as error:
         raise SpecError(where, "", f"cannot be written: {error.strerror}") from None
+    if told:
+        warnings.warn(told, SpecNote, stacklevel=2)
     return manipulator
 
 

@@ -1,0 +1,1 @@
+"""Real robots, as docs/robots.md tells how to write them."""
