@@ -101,7 +101,7 @@ class CompositeWriter:
                 symbol = self.book.define(
                     g.name(f"D_{j}_{k}"),
                     entry,
-                    f"D_{{{j}{k}}}",
+                    rf"\mathcal M_{{{j}{k}}}",
                     f"inertia of joint {k} along joint {j}" if j < k else f"inertia of joint {k}",
                     Law.FREEDOM,
                     reference="Sec. 2.2, joint table",
@@ -182,7 +182,7 @@ class CompositeWriter:
         force = self._named(
             f"P_c{k}",
             force,
-            rf"\mathbf P_{{{k}}}",
+            rf"\boldsymbol\Pi_{{{k}}}",
             f"force that accelerates joint {k}, per unit",
             Law.NEWTON,
             frame,
@@ -192,7 +192,7 @@ class CompositeWriter:
         return force, self._named(
             f"L_c{k}",
             moment,
-            rf"\mathbf L_{{{k}}}",
+            rf"\boldsymbol\Lambda_{{{k}}}",
             f"moment about joint {g.group[k]} that accelerates joint {k}, per unit",
             Law.EULER,
             frame,
@@ -206,7 +206,7 @@ class CompositeWriter:
         return self._named(
             f"L_c{k}_{group}",
             total,
-            rf"\mathbf L_{{{k},{group}}}",
+            rf"\boldsymbol\Lambda_{{{k},{group}}}",
             f"moment about joint {group} that accelerates joint {k}, per unit",
             Law.EULER,
             self.g.frame("axes", group),

@@ -168,13 +168,13 @@ def test_blocks_of_a_constrained_platform() -> None:
 def test_blocks_with_an_extra_coordinate() -> None:
     text = lines_of("stewart_sps", "**`M`.**", 14)
     assert text.count(r"\\") == 2
-    assert r"\mathbf m_{3,i}^{\mathsf T}" in text
+    assert r"\mathbf M_{yt,3,i}^{\mathsf T}" in text
     assert r"P_{3,i}^{(y_3)}" in text
 
 
 def test_leg_types_have_their_letters() -> None:
     text = document("planar_mixed")
-    assert r"M^* = M_p + \sum_i m_{2,i} + \sum_l m_{2,l} + \sum_n m_{2,n}" in text
+    assert r"m^* = m_p + \sum_i m_{2,i} + \sum_l m_{2,l} + \sum_n m_{2,n}" in text
     assert "Leg 1; index $`i`$ in sums." in text
 
 

@@ -90,7 +90,7 @@ def test_code_does_not_change() -> None:
     [
         ({"q_7": "L"}, r"symbols\.q_7: no quantity 'q_7' \(did you mean q_\d"),
         ({"wn_1": "L"}, r"symbols\.wn_1: no quantity"),
-        ({"q_2": "M_p"}, r"symbols\.q_2: M_\{p\} is the symbol of platform_mass"),
+        ({"q_2": "m_p"}, r"symbols\.q_2: m_\{p\} is the symbol of platform_mass"),
         ({"q_2": "q_1"}, r"symbols\.q_2: q_\{1\} is the symbol of q_1 as well; expected another"),
         ({"q_1": "L", "q_2": "L"}, r"symbols\.q_1: L is the symbol of q_2"),
         ({"e_1": "s", "e_2": "s"}, r"symbols\.e_1: .* is the symbol of e_2"),

@@ -152,7 +152,7 @@ def equation_of_motion(bundle: Bundle) -> tuple[str, ...]:
     lines = [
         r"\mathbf M(X)\,\mathbf A + \mathbf Z(X, V)",
         r"= \mathbf H(X)\,\boldsymbol\tau",
-        r"+ \mathbf W_{\mathrm{ext}}",
+        r"+ \mathbf F_{\mathrm{ext}}",
     ]
     if bundle.coordinates.sizes["NC"]:
         lines.append(r"+ \mathbf H_k(X)\,\boldsymbol\lambda")
