@@ -167,11 +167,16 @@ class CompositeWriter:
             self.g.name(f"Jc_{k}"),
             value,
             rf"\mathbf J^c_{{{k}}}",
-            f"inertia tensor of the links from {k} outwards about joint {k}",
+            f"inertia tensor of the links from {k} outwards about joint {k}{self._but_the_last()}",
             Law.DEFINITION,
             body=self.g.frame("axes", k),
             symmetric=True,
         )
+
+    def _but_the_last(self) -> str:
+        """The last link where its mass is counted with the platform."""
+        carried = any(body.at_tip for body in self.bodies.values())
+        return ", that of the last link about the connection point" if carried else ""
 
     def _effort(self, k: int, body: _Body) -> tuple[Any, Any]:
         """Force, and moment about the group's origin, per unit acceleration of joint k."""

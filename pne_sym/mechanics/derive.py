@@ -407,7 +407,7 @@ _AT_TIP = "their reference points: the connection point for the last link, the j
 _INVERSE = (
     "The joints are found one after another from the base, each from a quantity that the joints "
     r"beyond it cannot change: the scalar product with a direction fixed in link j. For a joint "
-    r"that turns this is one equation $`K^c_j\,\cos\vartheta_j+K^s_j\,\sin\vartheta_j=K^r_j`$ "
+    r"that turns this is one equation $`K^c_j\,\cos\xi_j+K^s_j\,\sin\xi_j=K^r_j`$ "
     r"for cosine and sine of its angle from the reference direction $`\hat{\mathbf x}^0_j`$; "
     r"$`K_j`$ is its amplitude, and $`\sigma_j`$, the sign of the root, is that of the home "
     r"position. What is zero by structure is left out."

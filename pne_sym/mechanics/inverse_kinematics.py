@@ -123,9 +123,9 @@ q_#:iterated     | q_{#}                 | given DISPLACEMENT | U
     displacement of joint #, by iteration on the loop closure
 q_#              | q_{#}                 | LOOP_CLOSURE DISPLACEMENT
     displacement of joint #
-c_#              | \cos\vartheta_{#}     | LOOP_CLOSURE
+c_#              | \cos\xi_{#}     | LOOP_CLOSURE
     cosine of the angle of joint # from its reference direction
-s_#              | \sin\vartheta_{#}     | LOOP_CLOSURE
+s_#              | \sin\xi_{#}     | LOOP_CLOSURE
     sine of the angle of joint # from its reference direction
 branch_#         | \sigma_{#}            | given constant
     assembly branch of joint #: +1 or -1, as at home
@@ -165,7 +165,7 @@ root_#:amplitude | K_{#}                 | LOOP_CLOSURE
     amplitude, with the sign of the branch
 root_#:nearest   | K_{#}                 | LOOP_CLOSURE
     amplitude: off the manifold the nearest angle is taken
-xi_#             | \boldsymbol\xi_{#}    | LOOP_CLOSURE RESOLVED
+xi_#             | \mathbf S^r_{#}       | LOOP_CLOSURE RESOLVED
     the vector from joint # to the connection point, resolved along link #
 from_centre_#    | \mathbf S'_{#}        | GEOMETRY
     from the centre at zero displacement to the connection point

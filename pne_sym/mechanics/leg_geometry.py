@@ -61,9 +61,9 @@ reference_#   | \hat{\mathbf a}_{#} | GEOMETRY constant
     reference direction of the angle of joint #
 l0_#          | \hat{\mathbf d}^0_{#} | given
     direction of interest of group # at zero displacement
-c0_#          | \cos\vartheta^0_{#} | GEOMETRY constant
+c0_#          | \cos\xi^0_{#} | GEOMETRY constant
     cosine of the angle at zero displacement of joint #
-s0_#          | \sin\vartheta^0_{#} | GEOMETRY constant
+s0_#          | \sin\xi^0_{#} | GEOMETRY constant
     sine of the angle at zero displacement of joint #
 end_axis      | \hat{\mathbf l} | given
     axis of the platform joint in the last link

@@ -26,7 +26,7 @@ STANDING = {
 # Letters whose dimension depends on what moves along the joint, or on the method: of these names.
 OF_JOINTS = {
     "q": r"q_\d", "y": r"y_\d", "v": r"v_", "w": r"wn?_", "o": r"o_|mu_c", "K": r"K|rho2|root",
-    "S": r"S|x_|p[xy]_|gap|from_centre|(d\d*_)?rel", r"\Gamma": r"(d\d*_)?Gamma",
+    "S": r"S|xi?_|p[xy]_|gap|from_centre|(d\d*_)?rel", r"\Gamma": r"(d\d*_)?Gamma",
     r"\mathcalM": "D_", r"\gamma": r"d_Gamma", r"\Delta": r"disc|volume",
     "n": r"n_c|f_c|n_m|p[xy]_", "P": r"(d\d_)?P_",
     r"\Lambda": "L_c", r"\Pi": "P_c", "H": "Hk?_", "M": "M_|d_P", "Z": "Z_", "R": "R_",
@@ -36,6 +36,7 @@ OF_JOINTS = {
 }  # fmt: skip
 WEIGHT = re.compile(r"\\(mathbf|boldsymbol|mathrm)(?![a-z])|[{}\s]")
 DOTS = re.compile(r"\\d?dot(?![a-z])")
+OF_ANGLE = re.compile(r"\\(cos|sin)(?![a-z])")
 SAME = {r"\varphi": r"\phi", r"\varepsilon": r"\epsilon", r"\vartheta": r"\theta"}
 
 
@@ -46,7 +47,7 @@ def derived(name: str) -> Derivation:
 
 def written(latex: str) -> tuple[str, str]:
     """Letter, and letter with dots and scripts: without weight and braces."""
-    letter = WEIGHT.sub("", DOTS.sub("", Glyph.of(latex).base))
+    letter = WEIGHT.sub("", OF_ANGLE.sub("", DOTS.sub("", Glyph.of(latex).base)))
     return SAME.get(letter, letter), re.sub(r"[{}\s]", "", WEIGHT.sub("", latex))
 
 
@@ -102,6 +103,6 @@ def test_one_meaning(name: str) -> None:
     ],
 )
 def test_two_meanings_are_seen(name: str, latex: str, told: str) -> None:
-    d = derived("planar_3rpr")
+    d = derived("planar_3rrr")
     changed = {**d.notation, name: replace(d.notation[name], latex=latex)}
     assert any(told in text for text in clashes(replace(d, notation=changed)))

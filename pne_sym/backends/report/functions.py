@@ -86,14 +86,14 @@ def _passive_statements(coordinates: Coordinates) -> Iterator[Statement]:
         )
     elif a.passive and not a.idle:
         yield Statement(
-            "**Extra coordinates without a drive** are held by the drives of other joints: "
+            "**Passive extra coordinates** are held by the actuators of other joints: "
             f"{drives} has rank {size} for almost all parameters and poses, so that all rows are "
             "solved, and any of their accelerations has forces.",
             (),
         )
     elif a.passive and not a.is_coupled:
         yield Statement(
-            "**Extra coordinates without a drive** follow from their own rows (Eq. 7); "
+            "**Passive extra coordinates** follow from their own rows (Eq. 7); "
             "`complete_acceleration` fills in their accelerations before inverse dynamics:",
             (r"\mathbf M_{yy}\,\ddot{\mathbf y} = -\mathbf M_{yx}\,\mathbf A_x - \mathbf Z_y",),
         )
@@ -113,7 +113,7 @@ def _coupled_statements(coordinates: Coordinates) -> Iterator[Statement]:
         rf"\qquad {_N}^{{\mathsf T}}\,\mathbf M_{{\cdot y}}\,{change} = -{gap}",
     )
     yield Statement(
-        f"**Extra coordinates without a drive**: {drives} acts on their rows too, but has rank "
+        f"**Passive extra coordinates**: {drives} acts on their rows too, but has rank "
         f"{a.rank} of {coordinates.sizes['NV']} for almost all parameters and poses. With columns "
         f"$`{_N}`$ that span what it leaves out, an acceleration has forces only where",
         (
@@ -173,8 +173,8 @@ def troubles(bundle: Bundle) -> tuple[str, ...]:
         )
     lines += [
         (
-            f"**Singular drives**: {_drives(bundle.coordinates)} has {_lacking(bundle)}; inverse "
-            "dynamics needs that, M, Z and H do not."
+            f"**Singular actuation**: {_drives(bundle.coordinates)} has {_lacking(bundle)}; "
+            "inverse dynamics needs that, M, Z and H do not."
         ),
         "**Singular masses**: "
         + (
@@ -211,7 +211,7 @@ def counts(bundle: Bundle) -> Table:
 
 def _gives(bundle: Bundle, name: str) -> str:
     if any(name == closure.function for closure in bundle.program.closures):
-        return "a step of the iteration that precedes the functions of X: gap and its derivative"
+        return "a step of the iteration before the functions of X: residual and its derivative"
     return FUNCTIONS[name]
 
 

@@ -35,7 +35,7 @@ def summary(bundle: Bundle) -> str:
     stars = ", a star marks a joint whose displacement is an extra coordinate"
     return (
         f"The mechanism is {SPACES[manipulator.space.value]}, carried by {carried} in parallel. "
-        f"Legs are named from the base to the platform ({_letters(bundle)}); driven joints are "
+        f"Legs are named from the base to the platform ({_letters(bundle)}); actuated joints are "
         f"underlined{stars if bundle.coordinates.extras else ''}."
     )
 
