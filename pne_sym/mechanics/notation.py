@@ -101,7 +101,7 @@ def with_symbols(
     bold = _bold(derivation)
     following: dict[str, Symbol] = {}
     own: dict[str, Symbol] = {}
-    for name, text in manipulator.symbols:
+    for name, text in _in_all_types(manipulator, derivation, places):
         _check_name(manipulator, name, derivation, places.keys() & derivation.notation.keys())
         parts = split_symbol(text)
         assert parts is not None, text
@@ -121,6 +121,17 @@ def with_symbols(
             manipulator, name, changed[name], places, {n: notation[n].latex for n in taken}
         )
     return replace(derivation, notation=notation)
+
+
+def _in_all_types(
+    manipulator: Manipulator, derivation: Derivation, places: Collection[str]
+) -> Iterator[tuple[str, str]]:
+    """The author's symbols; a name without its leg type is that of all types that have it."""
+    own = dict(manipulator.symbols)
+    for name, text in manipulator.symbols:
+        typed = [f"{name}_{info.name}" for info in derivation.leg_types]
+        found = [] if name in places else [n for n in typed if n in places]
+        yield from ((n, text) for n in (found or [name]) if n == name or n not in own)
 
 
 def _check_name(

@@ -75,6 +75,15 @@ def test_legs_of_different_types_may_share() -> None:
     assert notation["q_2_rpr"].latex == notation["q_2_prr"].latex == "L"
 
 
+def test_a_name_without_its_type_is_that_of_all_types() -> None:
+    """Another leg type suffixes the names of the first: symbols of the file stay."""
+    notation = derived("planar_mixed", q_2="L", q_2_prr="D").notation
+    found = [notation[f"q_2_{leg}"].latex for leg in ("rpr", "rrr", "prr")]
+    assert found == ["L", "L", "D"]
+    with pytest.raises(SpecError, match="no quantity 'q_9'"):
+        derived("planar_mixed", q_9="L")
+
+
 def test_code_does_not_change() -> None:
     plain = replace(manipulators.load("tripod_3rps"), symbols=())
     named = manipulators.load("tripod_3rps")
