@@ -235,21 +235,21 @@ def _rank(rows: Array) -> int:
 
 
 _TERMS = glossary(r"""
-a_c#        | \mathbf a_{c#}      | given
+a_c#        | \hat{\mathbf a}_{c#} | given
     coordinate direction of the last link, to complete the leg's freedoms
 t_c#        | \mathbf t_{c#}      | GEOMETRY
     velocity of the connection point as it turns about the fixed centre
-f_c#        | \mathbf f_{c#}      | RECIPROCITY | Eq. 35
+f_c#        | \mathbf n'_{c#}     | RECIPROCITY | Eq. 35
     force part of the wrench that does no work along the leg's freedoms, #
-m#_c%       | m_{c%#}             | RECIPROCITY | Eq. 35
+m#_c%       | \upsilon'_{c%#}     | RECIPROCITY | Eq. 35
     moment part # of the wrench that does no work along the leg's freedoms, %
-size_c#     | \ell_{c#}           | GEOMETRY
+size_c#     | \psi_{c#}           | GEOMETRY
     size of the %
 n_c#        | \mathbf n_{c#}      | GEOMETRY | Eq. 35
     unit force that the leg's freedoms leave out
-mu#_c%      | \mu_{c%#}           | GEOMETRY | Eq. 35
+mu#_c%      | \upsilon_{c%#}      | GEOMETRY | Eq. 35
     moment along direction # that goes with it
-mu_c#       | \boldsymbol\mu_{c#} | GEOMETRY | Eq. 35
+mu_c#       | \mathbf o_{c#}      | GEOMETRY | Eq. 35
     the moment that goes with it
 """)
 

@@ -101,7 +101,7 @@ class CompositeWriter:
                 symbol = self.book.define(
                     g.name(f"D_{j}_{k}"),
                     entry,
-                    f"D_{{{j}{k}}}",
+                    rf"\mathcal M_{{{j}{k}}}",
                     f"inertia of joint {k} along joint {j}" if j < k else f"inertia of joint {k}",
                     Law.FREEDOM,
                     reference="Sec. 2.2, joint table",
@@ -167,11 +167,16 @@ class CompositeWriter:
             self.g.name(f"Jc_{k}"),
             value,
             rf"\mathbf J^c_{{{k}}}",
-            f"inertia tensor of the links from {k} outwards about joint {k}",
+            f"inertia tensor of the links from {k} outwards about joint {k}{self._but_the_last()}",
             Law.DEFINITION,
             body=self.g.frame("axes", k),
             symmetric=True,
         )
+
+    def _but_the_last(self) -> str:
+        """The last link where its mass is counted with the platform."""
+        carried = any(body.at_tip for body in self.bodies.values())
+        return ", that of the last link about the connection point" if carried else ""
 
     def _effort(self, k: int, body: _Body) -> tuple[Any, Any]:
         """Force, and moment about the group's origin, per unit acceleration of joint k."""
@@ -182,7 +187,7 @@ class CompositeWriter:
         force = self._named(
             f"P_c_{k}",
             force,
-            rf"\mathbf P_{{{k}}}",
+            rf"\boldsymbol\Pi_{{{k}}}",
             f"force that accelerates joint {k}, per unit",
             Law.NEWTON,
             frame,
@@ -192,7 +197,7 @@ class CompositeWriter:
         return force, self._named(
             f"L_c_{k}",
             moment,
-            rf"\mathbf L_{{{k}}}",
+            rf"\boldsymbol\Lambda_{{{k}}}",
             f"moment about joint {g.group[k]} that accelerates joint {k}, per unit",
             Law.EULER,
             frame,
@@ -206,7 +211,7 @@ class CompositeWriter:
         return self._named(
             f"L_c_{k}_{group}",
             total,
-            rf"\mathbf L_{{{k},{group}}}",
+            rf"\boldsymbol\Lambda_{{{k},{group}}}",
             f"moment about joint {group} that accelerates joint {k}, per unit",
             Law.EULER,
             self.g.frame("axes", group),

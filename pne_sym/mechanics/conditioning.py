@@ -45,7 +45,7 @@ def write_lengths(book: Book, legs: Sequence[LegGeometry]) -> None:
     legs_size = book.define(
         "legs_size",
         sp.sqrt(sp.Add(*mean(lambda g: g.size**2))),
-        r"\ell_l",
+        r"\ell_s",
         "rms size of the legs, taken where the platform points coincide",
         Law.LUMPING,
         parameter=True,

@@ -27,9 +27,9 @@ n_c        | \mathbf n_c              | GEOMETRY | Eq. 35
     unit vector that the leg's freedoms leave out
 n_c1       | \mathbf n_c              | GEOMETRY | Eq. 35
     unit vector that the leg's freedoms leave out
-f_c_part   | \mathbf f'_c             | GEOMETRY
+f_c_part   | \mathbf n'_c             | GEOMETRY
     force that with the moment does no work along the leg's freedoms
-f_c_size   | \lVert\mathbf f'_c\rVert | GEOMETRY
+f_c_size   | \lVert\mathbf n'_c\rVert | GEOMETRY
     its size
 n_c:force  | \mathbf n_c              | GEOMETRY | Eq. 35
     unit force that the leg's freedoms leave out
@@ -37,7 +37,7 @@ volume_c   | \Delta_c                 | GEOMETRY
     triple product of the velocity vectors
 n_c:moment | \mathbf n_c              | GEOMETRY | Eq. 35
     force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-mu_c       | \mu_c                    | GEOMETRY | Eq. 35
+mu_c       | o_c                      | GEOMETRY | Eq. 35
     moment that goes with it
 """)
 

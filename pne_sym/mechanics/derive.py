@@ -237,7 +237,7 @@ def _connection(book: Book, platform: PlatformMotion, g: LegGeometry) -> tuple[V
         x = book.define(
             g.name("x_1"),
             x,
-            r"\mathbf x_{1}",
+            r"\mathbf S_{1}",
             "from the origin of joint 1 to the connection point",
             Law.GEOMETRY,
             body=g.frame("axes", 0),
@@ -306,7 +306,7 @@ def _closure_outputs(book: Book, leg: Leg, frame: str, space: TaskSpace) -> None
     gap = book.define(
         g.name("gap"),
         motion.gap,
-        r"\mathbf g",
+        r"\mathbf S_r",
         "from the connection point as the links reach it to the platform's",
         Law.LOOP_CLOSURE,
         body=frame,
@@ -359,7 +359,9 @@ def _dissipation(book: Book, legs: list[Leg]) -> None:
     if total == 0:
         return
     book.chapter("D", "Dissipation", "Friction times rate, of all joints; never negative.")
-    power = book.define("dissipation", total, "D", "power that friction takes", Law.FRICTION)
+    power = book.define(
+        "dissipation", total, r"\mathcal D", "power that friction takes", Law.FRICTION
+    )
     book.outputs.append(Output("dissipation", power, ((0, 0),)))
 
 
@@ -386,7 +388,7 @@ def _potential(
         if moment != ZeroVector:
             total = total + sum_over_legs(-Dot(platform.gravity, moment), leg.name)
         total = total + sum_over_legs(leg.dynamics.forces.potential, leg.name)
-    energy = book.define("potential", total, "V", "potential energy", Law.ENERGY)
+    energy = book.define("potential", total, r"\mathcal E", "potential energy", Law.ENERGY)
     book.outputs.append(Output("potential", energy, ((0, 0),)))
 
 
@@ -407,10 +409,10 @@ _AT_TIP = "their reference points: the connection point for the last link, the j
 _INVERSE = (
     "The joints are found one after another from the base, each from a quantity that the joints "
     r"beyond it cannot change: the scalar product with a direction fixed in link j. For a joint "
-    r"that turns this is one equation $`K^c_j\,c_j+K^s_j\,s_j=K^r_j`$ for cosine and sine of its "
-    r"angle from the reference direction $`\hat{\mathbf x}^0_j`$; $`\rho_j`$ is its amplitude, and "
-    r"$`\sigma_j`$, the sign of the root, is that of the home position. What is zero by structure "
-    r"is left out."
+    r"that turns this is one equation $`K^c_j\,\cos\xi_j+K^s_j\,\sin\xi_j=K^r_j`$ "
+    r"for cosine and sine of its angle from the reference direction $`\hat{\mathbf x}^0_j`$; "
+    r"$`K_j`$ is its amplitude, and $`\sigma_j`$, the sign of the root, is that of the home "
+    r"position. What is zero by structure is left out."
 )
 _ITERATED = (
     r"Not every joint of this leg has a closed form, so its displacements are found together, by "
@@ -422,9 +424,10 @@ _COMPOSITE = (
     r" The links of this leg turn differently, so their inertia is collected in the accelerations "
     r"of the joints first: all links from k outwards, frozen together, are one composite body with "
     r"first moment $`\mathbf h^c_k`$ and inertia tensor $`\mathbf J^c_k`$; a unit acceleration of "
-    r"joint k takes the force $`\mathbf P_k`$ and the moment $`\mathbf L_k`$, whose component "
-    r"along joint j is $`D_{jk}`$. With $`\ddot q_k`$ in closed form, $`\Gamma_j`$ then holds the "
-    r"platform's acceleration through $`\sum_k D_{jk}\,\ddot q_k`$."
+    r"joint k takes the force $`\boldsymbol\Pi_k`$ and the moment $`\boldsymbol\Lambda_k`$, "
+    r"whose component along joint j is $`\mathcal M_{jk}`$. With $`\ddot q_k`$ in closed form, "
+    r"$`\Gamma_j`$ then holds the platform's acceleration through "
+    r"$`\sum_k \mathcal M_{jk}\,\ddot q_k`$."
 )
 _MOMENTS = (
     r" The platform joint of this leg transmits moments along $`\mathbf n_{m1}`$ and on, which do "

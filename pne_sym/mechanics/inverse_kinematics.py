@@ -115,7 +115,7 @@ def given_displacements(book: Book, g: LegGeometry, reasons: dict[int, str]) -> 
 
 _ALONG_X, _ALONG_Y = (tuple(map(sp.Integer, axis)) for axis in ((1, 0, 0), (0, 1, 0)))
 _TERMS = glossary(r"""
-x_#              | \mathbf x_{#}         | GEOMETRY
+x_#              | \mathbf S_{#}         | GEOMETRY
     from the origin of joint # to the connection point
 y_#_extra        | y_{#}                 | given DISPLACEMENT | U
     extra coordinate: displacement of joint #
@@ -123,9 +123,9 @@ q_#:iterated     | q_{#}                 | given DISPLACEMENT | U
     displacement of joint #, by iteration on the loop closure
 q_#              | q_{#}                 | LOOP_CLOSURE DISPLACEMENT
     displacement of joint #
-c_#              | c_{#}                 | LOOP_CLOSURE
+c_#              | \cos\xi_{#}     | LOOP_CLOSURE
     cosine of the angle of joint # from its reference direction
-s_#              | s_{#}                 | LOOP_CLOSURE
+s_#              | \sin\xi_{#}     | LOOP_CLOSURE
     sine of the angle of joint # from its reference direction
 branch_#         | \sigma_{#}            | given constant
     assembly branch of joint #: +1 or -1, as at home
@@ -137,15 +137,15 @@ link_x_#         | \hat{\mathbf x}_{#}   | given
     direction across axis #, fixed in link #
 link_y_#         | \hat{\mathbf y}_{#}   | given
     direction across axis #, fixed in link #
-un_#             | u^x_{#}               | LUMPING
+un_#             | l^x_{#}               | LUMPING
     component along the x axis of link # of the direction fixed in it
-um_#             | u^y_{#}               | LUMPING
+um_#             | l^y_{#}               | LUMPING
     component along the y axis of link # of the direction fixed in it
-uu_#             | \upsilon_{#}          | LUMPING
+uu_#             | l_{#}^2               | LUMPING
     squared length, across the axis, of the direction fixed in link #
-px_#             | x_{#}                 | LOOP_CLOSURE
+px_#             | S^x_{#}               | LOOP_CLOSURE
     component along the reference direction
-py_#             | y_{#}                 | LOOP_CLOSURE
+py_#             | S^y_{#}               | LOOP_CLOSURE
     component across the reference direction
 Kd_#             | K^d_{#}               | LOOP_CLOSURE
     projection on the centre's direction, from the distance fixed by the joints beyond joint #
@@ -155,21 +155,21 @@ Ks_#             | K^s_{#}               | LOOP_CLOSURE
     factor of the sine in the equation of joint #
 Kr_#             | K^r_{#}               | LOOP_CLOSURE
     right-hand side of the equation of joint #
-rho2_#           | \rho_{#}^2            | LOOP_CLOSURE
+rho2_#           | K_{#}^2               | LOOP_CLOSURE
     squared amplitude
 disc_#           | \Delta_{#}            | LOOP_CLOSURE
     discriminant
-root_#           | r_{#}                 | LOOP_CLOSURE
+root_#           | \delta_{#}            | LOOP_CLOSURE
     root, with the sign of the branch
-root_#:amplitude | \rho_{#}              | LOOP_CLOSURE
+root_#:amplitude | K_{#}                 | LOOP_CLOSURE
     amplitude, with the sign of the branch
-root_#:nearest   | \rho_{#}              | LOOP_CLOSURE
+root_#:nearest   | K_{#}                 | LOOP_CLOSURE
     amplitude: off the manifold the nearest angle is taken
-xi_#             | \boldsymbol\xi_{#}    | LOOP_CLOSURE RESOLVED
+xi_#             | \mathbf S^r_{#}       | LOOP_CLOSURE RESOLVED
     the vector from joint # to the connection point, resolved along link #
-from_centre_#    | \mathbf y_{#}         | GEOMETRY
+from_centre_#    | \mathbf S'_{#}        | GEOMETRY
     from the centre at zero displacement to the connection point
-px_#:slide       | x_{#}                 | LOOP_CLOSURE
+px_#:slide       | S^e_{#}               | LOOP_CLOSURE
     component along axis #
 disc_#:slide     | \Delta_{#}            | LOOP_CLOSURE
     discriminant of the distance equation

@@ -247,7 +247,7 @@ class DynamicsWriter:
             turning = self.write.define(
                 f"phi_{j}",
                 Cross(alpha, h) + Cross(omega, Cross(omega, h)),
-                rf"\boldsymbol\varphi_{{{j}}}",
+                rf"\mathbf f^{{\omega}}_{{{j}}}",
                 f"inertia force of link {j} from its turning about its reference point",
                 Law.NEWTON,
                 coefficient_latex=rf"\boldsymbol\Phi_{{{j}}}",
@@ -278,7 +278,7 @@ class DynamicsWriter:
             rf"\mathbf a_{{{j}}}",
             f"acceleration of the reference point of link {j}, less gravity",
             Law.RATE,
-            coefficient_latex=rf"\mathbf V_{{{j}}}",
+            coefficient_latex=rf"\boldsymbol\Theta_{{{j}}}",
             body=frame,
             forms=forms,
             rest_forms=rests,
@@ -451,7 +451,7 @@ class DynamicsWriter:
             rf"\mathbf f_{{{j}}}",
             f"inertia force of link {j} less its weight",
             Law.NEWTON,
-            coefficient_latex=rf"\mathbf F'_{{{j}}}",
+            coefficient_latex=rf"\boldsymbol\Upsilon_{{{j}}}",
             body=self.g.frame("axes", body.group),
             reference="Eq. 1",
             collected=not self.g.composite,
@@ -508,7 +508,7 @@ class DynamicsWriter:
             f"moment about joint {group} of the links from {group} outwards, the force at the "
             f"connection point left out",
             Law.EULER,
-            coefficient_latex=rf"\mathbf D_{{{group}}}",
+            coefficient_latex=rf"\boldsymbol\Xi_{{{group}}}",
             body=g.frame("axes", group),
             reference="Sec. 2.5, step 1.3",
             collected=not g.composite,
@@ -521,10 +521,10 @@ class DynamicsWriter:
         return self.write.define(
             f"T_{j}",
             total,
-            rf"\mathbf T_{{{j}}}",
+            rf"\mathbf f^{{\Sigma}}_{{{j}}}",
             f"inertia force of the links from {j} outwards, the last link left out",
             Law.NEWTON,
-            coefficient_latex=rf"\mathbf C_{{{j}}}",
+            coefficient_latex=rf"\boldsymbol{{\mathcal F}}_{{{j}}}",
             body=frame,
             collected=not self.g.composite,
         )
@@ -583,7 +583,7 @@ class DynamicsWriter:
             "force at the connection point that balances the leg's "
             "inertia and weight along all freedoms",
             Law.RECIPROCITY,
-            coefficient_latex=r"\mathbf C",
+            coefficient_latex=r"\boldsymbol{\mathcal G}",
             body=self.k.tip_frame(),
             reference="Sec. 2.3",
         )
@@ -600,7 +600,7 @@ class DynamicsWriter:
                 "leg force on the platform without actuation and without the mass at the "
                 "connection point",
                 Law.REDUCTION,
-                coefficient_latex=r"\mathbf K",
+                coefficient_latex=r"\boldsymbol{\mathcal C}",
                 body=frame,
                 reference="Eq. 3",
             )
@@ -651,7 +651,7 @@ class DynamicsWriter:
                         f"moment along moment direction {k} that balances the leg's inertia "
                         "and weight along all freedoms",
                         Law.RECIPROCITY,
-                        coefficient_latex=rf"\mathbf c_{{m{k}}}",
+                        coefficient_latex=rf"\boldsymbol{{\mathcal G}}_{{m{k}}}",
                         reference="Sec. 2.2, joint table",
                     )
                 )
@@ -664,7 +664,7 @@ class DynamicsWriter:
             "moment at the connection point that balances the leg's inertia and weight along "
             "all freedoms",
             Law.RECIPROCITY,
-            coefficient_latex=r"\mathbf C_m",
+            coefficient_latex=r"\boldsymbol{\mathcal G}_m",
             body=self.k.tip_frame(),
             reference="Sec. 2.2, joint table",
         )
@@ -679,7 +679,7 @@ class DynamicsWriter:
             r"\mathbf c_m",
             "moment of the leg on the platform without actuation",
             Law.REDUCTION,
-            coefficient_latex=r"\mathbf K_m",
+            coefficient_latex=r"\boldsymbol{\mathcal C}_m",
             body=self.k.tip_frame(),
             reference="Eq. 3",
         )
@@ -695,7 +695,7 @@ class DynamicsWriter:
             rf"P_{{{j}}}",
             f"inertia and weight of the leg along the extra freedom of joint {j}",
             Law.FREEDOM,
-            coefficient_latex=rf"\mathbf m_{{{j}}}",
+            coefficient_latex=rf"\mathbf M_{{yt,{j}}}",
             reference="Eqs. 6, 7",
         )
         result.extra_rows[j] = (symbol, motion.known[symbol])

@@ -39,43 +39,43 @@ _NUMBER = re.compile(r"(?<=_)\d+(?=_|$)")
 _TERMS = glossary(r"""
 b             | \mathbf b       | given
     base point of the leg
-q             | \mathbf q       | given
+q             | \mathbf p       | given
     platform origin to connection point, fixed in the platform
 e_#           | \mathbf e_{#}   | given
     axis of joint #
 d_#           | \mathbf d_{#}   | given
     offset of &, fixed in link %
-z_#           | \mathbf z_{#}   | given
+z_#           | \hat{\mathbf z}_{#} | given
     axis of group #
-l_#           | \mathbf l_{#}   | given
+l_#           | \hat{\mathbf d}_{#} | given
     direction of interest in group #
-n%_#_part     | \mathbf n'_{#}  | GEOMETRY constant
+n%_#_part     | \hat{\mathbf n}'_{#} | GEOMETRY constant
     part of the direction perpendicular to axis #
-n%_#          | \mathbf n_{#}   | GEOMETRY constant
+n%_#          | \hat{\mathbf n}_{#} | GEOMETRY constant
     canonical x axis of group #
 z0_#          | \mathbf e_{#}   | given
     axis of joint #, fixed in link %
-k%_#          | \mathbf k_{%#}  | given
+k%_#          | \hat{\mathbf k}_{%#} | given
     axis % of group &
-aside_#       | \mathbf a'_{#}  | GEOMETRY constant
+aside_#       | \hat{\mathbf a}'_{#} | GEOMETRY constant
     direction across axis #
-reference_#   | \mathbf a^0_{#} | GEOMETRY constant
+reference_#   | \hat{\mathbf a}_{#} | GEOMETRY constant
     reference direction of the angle of joint #
-l0_#          | \mathbf l^0_{#} | given
+l0_#          | \hat{\mathbf d}^0_{#} | given
     direction of interest of group # at zero displacement
-c0_#          | c^0_{#}         | GEOMETRY constant
+c0_#          | \cos\xi^0_{#} | GEOMETRY constant
     cosine of the angle at zero displacement of joint #
-s0_#          | s^0_{#}         | GEOMETRY constant
+s0_#          | \sin\xi^0_{#} | GEOMETRY constant
     sine of the angle at zero displacement of joint #
-end_axis      | \mathbf a_l     | given
+end_axis      | \hat{\mathbf l} | given
     axis of the platform joint in the last link
-end_across    | \mathbf i_{#}   | given
+end_across    | \hat{\mathbf i}_{#} | given
     direction # of the last link, well across that axis
-end_l#        | \mathbf a_{l#}  | given
+end_l#        | \hat{\mathbf l}_{#} | given
     direction of the platform joint, fixed in the last link
-end_l#:across | \mathbf a_{l#}  | LUMPING constant
+end_l#:across | \hat{\mathbf l}_{#} | LUMPING constant
     direction # across the platform joint's axis, fixed in the last link
-end_p#        | \mathbf a_{p#}  | given
+end_p#        | \hat{\mathbf p}_{#} | given
     direction of the platform joint, fixed in the platform
 """)
 _FIELDS = {

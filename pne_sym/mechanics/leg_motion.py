@@ -51,7 +51,7 @@ o_#        | \mathbf o_{#}            | RECIPROCITY RECIPROCAL | Sec. 2.2, joint
     moment part of reciprocal wrench #
 n_m#       | \mathbf n_{m#}           | GEOMETRY | Sec. 2.2, joint table
     direction # of the moment that the platform joint transmits
-m#_%       | m_{&#}                   | RECIPROCITY | Sec. 2.2, joint table
+m#_%       | \upsilon_{&#}            | RECIPROCITY | Sec. 2.2, joint table
     moment part # of reciprocal wrench &
 S_dot_rest | \dot{\mathbf S}'         | RATE
     velocity of the connection point left to the joints that are not extra
@@ -61,7 +61,7 @@ qd_#       | \dot q_{#}               | RECIPROCITY RATE
     rate of joint #
 omega_#    | \boldsymbol\omega_{#}    | RATE
     angular velocity of link #
-W_#        | \mathbf W_{#}            | DEFINITION symmetric
+W_#        | \mathbf C_{#}            | DEFINITION symmetric
     centripetal tensor of link #
 u_1        | \mathbf u_1              | RATE | Eq. 23
     centripetal acceleration of the connection point
@@ -85,7 +85,7 @@ nu_#       | \nu_{#}                  | RATE | Sec. 2.2, joint table
     bias of the angular acceleration along moment direction #
 alpha_#    | \boldsymbol\alpha_{#} ; \boldsymbol\Omega_{#} | RATE
     angular acceleration of link #
-a_o_#      | \mathbf a_{o#} ; \mathbf V_{#} | RATE
+a_o_#      | \mathbf a_{o#} ; \boldsymbol\Theta_{o#} | RATE
     acceleration of the origin of joint #
 w_#        | \mathbf w_{#}            | RECIPROCITY RECIPROCAL | Sec. 2.3
     reciprocal vector %
@@ -109,7 +109,7 @@ _RATES = (
     r"$`\dot{\mathbf S}=\sum_j\mathbf v_j\,\dot q_j`$. The reciprocal vectors $`\mathbf w_j`$, "
     r"with $`\mathbf w_j\cdot\mathbf v_k=1`$ for $`j=k`$ and 0 otherwise, solve this for the joint "
     r"rates. The centripetal tensor saves work: "
-    r"$`\mathbf W_j\,\mathbf r=\boldsymbol\omega_j\times(\boldsymbol\omega_j\times\mathbf r)`$ for "
+    r"$`\mathbf C_j\,\mathbf r=\boldsymbol\omega_j\times(\boldsymbol\omega_j\times\mathbf r)`$ for "
     r"every vector $`\mathbf r`$."
 )
 _ACCELERATIONS = (
@@ -129,7 +129,7 @@ _REMAINDERS = (
 )
 _TENSOR = (
     r"The acceleration tensor saves work: "
-    r"$`\mathbf B_j\,\mathbf r=\boldsymbol\alpha_j\times\mathbf r+\mathbf W_j\,\mathbf r`$."
+    r"$`\mathbf B_j\,\mathbf r=\boldsymbol\alpha_j\times\mathbf r+\mathbf C_j\,\mathbf r`$."
 )
 
 

@@ -101,8 +101,7 @@ def with_symbols(
     bold = _bold(derivation)
     following: dict[str, Symbol] = {}
     own: dict[str, Symbol] = {}
-    for key, text in manipulator.symbols:
-        name = full_name(derivation, key)
+    for key, name, text in _in_all_types(manipulator, derivation, places):
         _check_name(manipulator, key, name, derivation, places.keys() & derivation.notation.keys())
         parts = split_symbol(text)
         assert parts is not None, text
@@ -122,6 +121,18 @@ def with_symbols(
             manipulator, name, changed[name], places, {n: notation[n].latex for n in taken}
         )
     return replace(derivation, notation=notation)
+
+
+def _in_all_types(
+    manipulator: Manipulator, derivation: Derivation, places: Collection[str]
+) -> Iterator[tuple[str, str, str]]:
+    """The author's keys, quantities, symbols; a key without a leg type is of all that have it."""
+    own = {full_name(derivation, key) for key, _ in manipulator.symbols}
+    for key, text in manipulator.symbols:
+        name = full_name(derivation, key)
+        typed = [f"{info.name}_{key}" for info in derivation.leg_types]
+        found = [] if name in places else [n for n in typed if n in places]
+        yield from ((key, n, text) for n in (found or [name]) if n == name or n not in own)
 
 
 def _check_name(

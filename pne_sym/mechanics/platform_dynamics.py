@@ -101,7 +101,7 @@ class PlatformWriter:
         self.mass = book.define(
             "m_star",
             self.total(lambda leg: leg.dynamics.tip_mass, sp.Add(*(mass for mass, *_ in bodies))),
-            r"M^*",
+            r"m^*",
             "mass of the platform with the gathered masses",
             Law.LUMPING,
             parameter=True,
@@ -542,7 +542,7 @@ class PlatformWriter:
         gap = book.define(
             g.name(f"phi_c{k + 1}"),
             miss,
-            rf"\phi_{{{k + 1}}}",
+            rf"\chi_{{{k + 1}}}",
             "angle by which the leg misses the platform, about a direction left out"
             if left_out.of_moment
             else "distance by which the leg misses the platform, along a direction left out",
@@ -558,7 +558,7 @@ class PlatformWriter:
         bias = book.define(
             g.name(f"gamma_c{k + 1}"),
             Dot(normal, rest) + turning,
-            rf"\gamma_{{{k + 1}}}",
+            rf"\iota_{{{k + 1}}}",
             "part of the constraint's second derivative that does not hold the acceleration",
             Law.LOOP_CLOSURE,
             reference="Eq. 37",

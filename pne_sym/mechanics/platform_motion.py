@@ -78,7 +78,7 @@ def introduce_platform(book: Book, manipulator: Manipulator, space: TaskSpace) -
         spin = book.define(
             "W_p",
             Compose(Skew(vectors["omega"]), Skew(vectors["omega"])),
-            r"\mathbf W_p",
+            r"\mathbf C_p",
             "centripetal tensor of the platform",
             Law.DEFINITION,
             body="base",
@@ -113,8 +113,8 @@ def introduce_platform(book: Book, manipulator: Manipulator, space: TaskSpace) -
 _TEXT = (
     r"The pose of the platform gives its origin and its rotation matrix; velocity and acceleration "
     r"are those of the origin. Two tensors save work: for a vector $`\mathbf r`$ fixed in the "
-    r"platform $`\mathbf W_p\,\mathbf r=\boldsymbol\omega\times(\boldsymbol\omega\times\mathbf r)`$"
-    r" and $`\mathbf B_p\,\mathbf r=\boldsymbol\alpha\times\mathbf r+\mathbf W_p\,\mathbf r`$."
+    r"platform $`\mathbf C_p\,\mathbf r=\boldsymbol\omega\times(\boldsymbol\omega\times\mathbf r)`$"
+    r" and $`\mathbf B_p\,\mathbf r=\boldsymbol\alpha\times\mathbf r+\mathbf C_p\,\mathbf r`$."
 )
 
 
@@ -277,7 +277,7 @@ _PLATFORM = _Carried(
     "p",
     "centre of mass, platform frame",
     "inertia tensor about the centre of mass, platform axes",
-    r"\mathbf R",
+    r"\boldsymbol\rho_p",
 )
 _PAYLOAD = _Carried(
     "payload",
@@ -288,7 +288,7 @@ _PAYLOAD = _Carried(
     "l",
     "centre of mass of the payload, platform frame",
     "inertia tensor of the payload about its centre of mass, platform axes",
-    r"\mathbf R_l",
+    r"\boldsymbol\rho_l",
 )
 
 
@@ -320,7 +320,7 @@ def _inertia(book: Book, body: Body, space: TaskSpace, names: _Carried) -> tuple
         )
     )
     book.note_quantity(
-        Quantity(f"{prefix}_mass", f"M_{names.mark}", f"mass of {names.word}", parameter=True)
+        Quantity(f"{prefix}_mass", f"m_{names.mark}", f"mass of {names.word}", parameter=True)
     )
     whose = "" if names is _PLATFORM else f" of {names.word}"
     R = book.give(

@@ -77,11 +77,18 @@ def test_legs_of_different_types_may_share() -> None:
     assert notation["rpr_q_2"].latex == notation["prr_q_2"].latex == "L"
 
 
-def test_the_leg_type_may_be_left_out_where_it_is_clear_or_stand_behind() -> None:
+def test_the_leg_type_may_stand_behind() -> None:
     notation = derived("planar_mixed", q_2_rpr="L").notation
     assert notation["rpr_q_2"].latex == "L"
-    with pytest.raises(SpecError, match=r"symbols\.q_2: no quantity 'q_2' \(did you mean \w+_q_2"):
-        derived("planar_mixed", q_2="L")
+
+
+def test_a_name_without_its_type_is_that_of_all_types() -> None:
+    """With another leg type beside the first, the symbols of the file stay."""
+    notation = derived("planar_mixed", q_2="L", q_2_prr="D").notation
+    found = [notation[f"{leg}_q_2"].latex for leg in ("rpr", "rrr", "prr")]
+    assert found == ["L", "L", "D"]
+    with pytest.raises(SpecError, match="no quantity 'q_9'"):
+        derived("planar_mixed", q_9="L")
 
 
 def test_code_does_not_change() -> None:
@@ -99,7 +106,7 @@ def test_code_does_not_change() -> None:
     [
         ({"q_7": "L"}, r"symbols\.q_7: no quantity 'q_7' \(did you mean q_\d"),
         ({"wn_1": "L"}, r"symbols\.wn_1: no quantity"),
-        ({"q_2": "M_p"}, r"symbols\.q_2: M_\{p\} is the symbol of platform_mass"),
+        ({"q_2": "m_p"}, r"symbols\.q_2: m_\{p\} is the symbol of platform_mass"),
         (
             {"q_2": "q_1"},
             r"symbols\.q_2: q_\{1\} is the symbol of rps_q_1 as well; expected another",
@@ -130,5 +137,5 @@ def test_a_symbol_is_free_when_its_holder_has_another() -> None:
 def test_axes_that_are_one_vector_may_share() -> None:
     notation = derived("hybrid_3prps", e_1="k", e_2="k").notation
     assert notation["prps_e_1"].latex == notation["prps_e_2"].latex == r"\mathbf{k}"
-    with pytest.raises(SpecError, match="is the symbol of rrrrrr_e_4"):  # parallel at home only
+    with pytest.raises(SpecError, match="is the symbol of six_r_e_4"):  # parallel at home only
         derived("hexapod_6x6r", e_1="k", e_4="k")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 
 from pne_sym import manipulators
 from pne_sym.backends.bundle import Bundle
+from pne_sym.backends.glyphs import Glyph
 from pne_sym.backends.report import ReportBackend
 from pne_sym.model.manipulator import Manipulator
 from tests import models
@@ -66,6 +68,21 @@ def test_report_computes(name: str, seed: int) -> None:
     close(least(found, state.wrench), tau[0] if isinstance(tau, tuple) else tau, "tau")
 
 
+@pytest.mark.parametrize("name", ["planar_3rpr"])
+def test_the_unit_vector_along_the_leg(name: str) -> None:
+    """What is said to be the axis of a slide has its components."""
+    manipulator = models.catalogue(name)
+    bundle = models.bundle(manipulator)
+    text = ReportBackend().emit(bundle)[f"{name}.md"]
+    said = re.findall(r"\(\$`(.+?)`\$ is \$`(.+?)`\$, the unit vector", text)
+    assert said
+    found = Interpreter(text, numbers_of(bundle, models.state_at(manipulator, 1)))
+    for leg in found.legs.values():
+        for reciprocal, axis in said:
+            w, e = (leg.base[str(Glyph.of(s))] for s in (reciprocal, axis))
+            np.testing.assert_allclose(w, e, rtol=0, atol=CLOSE)
+
+
 def close(found: Any, wanted: Any, what: str) -> None:
     """Equal to the last digits, against the largest entry."""
     size = max(1.0, np.abs(wanted).max(initial=0.0))
@@ -79,7 +96,7 @@ def test_a_changed_report_computes_otherwise() -> None:
     text = ReportBackend().emit(bundle)["planar_3rpr.md"]
     numbers = numbers_of(bundle, models.state_at(manipulator, 0))
     right = Interpreter(text, numbers).array("M")
-    turned = text.replace(r"+ \sin(q_1)\,", r"- \sin(q_1)\,")
+    turned = text.replace(r"+ \sin(\theta)\,", r"- \sin(\theta)\,")
     assert turned != text
     with pytest.raises(AssertionError, match="Not equal"):
         close(Interpreter(turned, numbers).array("M"), right, "M")

@@ -9,6 +9,7 @@ from pne_sym.backends.report.equations import ChapterWriter, index_rows
 from pne_sym.backends.report.given import GivenWriter
 from pne_sym.backends.report.markdown import escape, inline, table
 from pne_sym.backends.report.names import printer_for
+from pne_sym.backends.report.overview import overview
 from pne_sym.backends.report.view import ReportView
 from pne_sym.backends.templating import render
 
@@ -27,7 +28,8 @@ class ReportBackend:
         derivation = bundle.derivation
         printer = printer_for(derivation)
         given = GivenWriter(derivation, printer)
-        chapters = ChapterWriter(bundle, collect(derivation)).chapters()
+        collected = collect(derivation)
+        chapters = ChapterWriter(bundle, collected).chapters()
         used_laws = {e.law for e in derivation.equations()}
         return ReportView(
             name=bundle.name,
@@ -46,12 +48,17 @@ class ReportBackend:
             ),
             frames=given.frames(None),
             notation=given.table(None),
-            parameters=legs.parameter_table(derivation, None),
+            parameters=legs.parameter_table(derivation),
+            places=legs.places(derivation),
+            overview=tuple(overview(bundle, collected, printer)),
             legs=legs.leg_views(bundle, given),
             chapters=chapters,
             functions=tuple(functions.function_statements(bundle, printer)),
             troubles=functions.troubles(bundle),
             counts=functions.counts(bundle),
             parts=functions.parts(bundle),
-            index=table(("Symbol", "Meaning", "Unit", "Equation"), index_rows(derivation, printer)),
+            index=table(
+                ("Symbol", "Meaning", "Unit", "Equation"),
+                index_rows(derivation, printer, collected),
+            ),
         )

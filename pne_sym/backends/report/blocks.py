@@ -42,12 +42,12 @@ ARRAYS = (
     ),
     (
         "constraints",
-        r"\boldsymbol\varphi(X)",
+        r"\boldsymbol\chi(X)",
         "By how much the legs miss the platform, zero where it can be (Eq. 37)",
     ),
     (
         "constraint_bias",
-        r"\boldsymbol\gamma(X,V)",
+        r"\boldsymbol\iota(X,V)",
         "What the second derivative of the constraints holds besides the acceleration",
     ),
 )
@@ -95,7 +95,7 @@ def _partition(bundle: Bundle) -> Statement:
             r"\begin{bmatrix}\mathbf A_x \\ \ddot{\mathbf y}\end{bmatrix}",
             r"+ \begin{bmatrix}\mathbf Z_x \\ \mathbf Z_y\end{bmatrix}",
             rf"= \begin{{bmatrix}}\mathbf H_x \\ {drives}\end{{bmatrix}}\boldsymbol\tau",
-            r"+ \begin{bmatrix}\mathbf W_{\mathrm{ext}} \\ \mathbf 0\end{bmatrix}",
+            r"+ \begin{bmatrix}\mathbf F_{\mathrm{ext}} \\ \mathbf 0\end{bmatrix}",
         ),
     )
 

@@ -11,8 +11,10 @@ from pne_sym.backends.report.blocks import block_statements, defines_blocks
 from pne_sym.backends.report.collected import Collected, collected_terms
 from pne_sym.backends.report.given import GivenWriter
 from pne_sym.backends.report.legforce import leg_force_statements
+from pne_sym.backends.report.legs import solved
 from pne_sym.backends.report.markdown import display, inline, table, unit
 from pne_sym.backends.report.names import plain_names, printer_for
+from pne_sym.backends.report.overview import unit_vectors
 from pne_sym.backends.report.view import ChapterView, EquationView, Statement, Table
 from pne_sym.backends.report.words import SCREWS
 from pne_sym.backends.terms import Term
@@ -23,8 +25,10 @@ from pne_sym.derivation import (
     Equation,
     ReciprocalBasis,
     Trouble,
+    names_in,
     rotations_by_place,
 )
+from pne_sym.vector import LinearForm
 
 
 class ChapterWriter:
@@ -41,7 +45,37 @@ class ChapterWriter:
 
     def chapters(self) -> tuple[ChapterView, ...]:
         """All chapters, each with what it has led to."""
-        return tuple(self.chapter(chapter) for chapter in self.derivation.chapters)
+        found = [self.chapter(chapter) for chapter in self.derivation.chapters]
+        guards = [self._guards(c) for c in self.derivation.chapters if self._measures(c)]
+        return (*found[:-1], *guards, found[-1])
+
+    def _guards(self, chapter: Chapter) -> ChapterView:
+        """The lengths against which a leg type's singularities are measured."""
+        title = chapter.title.replace("Geometry and inertia", "Lever arms")
+        return ChapterView(
+            f"chapter-{chapter.leg_type}-arms",
+            plain_names(title, self.derivation),
+            "A number that tells what is nearly singular; nothing else depends on it.",
+            tuple(self.equation(e, self.plain) for e in self._measures(chapter)),
+            (),
+        )
+
+    def _measures(self, chapter: Chapter) -> list[Equation]:
+        """Equations of a leg's length that nothing in its chapters but conditions needs."""
+        lengths = {n for b in self.derivation.bases for n in names_in(b.length)}
+        own = [e for e in chapter.equations if chapter.leg_type and e.name in lengths]
+        used = {n for e in own for n in e.uses}
+        found = [e for e in chapter.equations if e in own or e.name in used]
+        others = [
+            n
+            for c in self.derivation.chapters
+            if c.leg_type == chapter.leg_type
+            for e in c.equations
+            if e not in found
+            for part in (e.rhs, *e.forms)
+            for n in names_in(part)
+        ]
+        return [] if {e.name for e in found} & set(others) else found
 
     def chapter(self, chapter: Chapter) -> ChapterView:
         """One chapter."""
@@ -49,15 +83,22 @@ class ChapterWriter:
         return ChapterView(
             f"chapter-{chapter.id}",
             plain_names(chapter.title, self.derivation),
-            plain_names(chapter.text, self.derivation),
+            self._text(chapter),
             tuple(self.equation(e, printer) for e in self._in_order(chapter)),
             tuple(self._statements(chapter)),
         )
 
+    def _text(self, chapter: Chapter) -> str:
+        """The opening paragraph; of inverse kinematics also how each joint is found."""
+        text = plain_names(chapter.text, self.derivation)
+        info = next((t for t in self.derivation.leg_types if f"{t.name}-K" == chapter.id), None)
+        return "\n".join([text, "", *(f"- {line}" for line in solved(info))]) if info else text
+
     def _in_order(self, chapter: Chapter) -> Iterator[Equation]:
         """The equations of a chapter, and rotations as soon as they are known."""
+        later = self._measures(chapter)
         for k in range(len(chapter.equations) + 1):
-            yield from chapter.equations[k - 1 : k] if k else ()
+            yield from (e for e in chapter.equations[k - 1 : k] if k and e not in later)
             yield from self.rotations.get((chapter.id, k), ())
 
     def _statements(self, chapter: Chapter) -> Iterator[Statement]:
@@ -106,13 +147,9 @@ class ChapterWriter:
         return f"{title}{measure}. *{_capital(equation.law.value)}{reference}.*"
 
     def _part_headline(self, equation: Equation, origin: Equation, printer: LatexPrinter) -> str:
-        name = inline(printer.doprint(origin.lhs))
-        where = f"{name} ([{origin.id}](#{origin.id}))"
         form = self.collected.forms.get(origin.name)
-        for unknown, value in form.coefficients.items() if form else ():
-            if value == equation.lhs:
-                return f"Coefficient of {inline(printer.doprint(unknown))} in {where}."
-        return f"Remainder of {where}."
+        part = part_of(equation, origin, form, printer)
+        return f"{_capital(part)} ([{origin.id}](#{origin.id}))."
 
     def _steps(self, equation: Equation, printer: LatexPrinter) -> Table | None:
         if not equation.steps:
@@ -136,6 +173,13 @@ class ChapterWriter:
                     t.signed(first=k == 0) for k, t in enumerate(terms)
                 )
                 yield f"Collected by Rules I and II: {inline(text)}."
+        for info in self.derivation.leg_types:
+            axis = unit_vectors(self.derivation, info.name).get(equation.name)
+            if axis is not None:
+                yield (
+                    f"It is {inline(printer.doprint(axis))} itself, the unit vector along the leg: "
+                    "joints that turn move the connection point across it."
+                )
         if any(b.rows and b.duals[0] == equation.lhs for b in self.derivation.bases):
             yield SCREWS
         body = next((b for b in self.derivation.body_frames if b.equation is equation), None)
@@ -152,6 +196,17 @@ class ChapterWriter:
         if condition.trouble is Trouble.UNREACHABLE:
             return f"**Out of reach** where {inline(text + ' < 0')}."
         return f"**Singular** where {inline(text)} vanishes."
+
+
+def part_of(
+    equation: Equation, origin: Equation, form: LinearForm | None, printer: LatexPrinter
+) -> str:
+    """What a coefficient or a remainder is of."""
+    name = inline(printer.doprint(origin.lhs))
+    for unknown, value in form.coefficients.items() if form else ():
+        if value == equation.lhs:
+            return f"coefficient of {inline(printer.doprint(unknown))} in {name}"
+    return f"remainder of {name}"
 
 
 def last_duals(derivation: Derivation) -> dict[str, ReciprocalBasis]:
@@ -191,7 +246,9 @@ def basis_condition(basis: ReciprocalBasis, printer: LatexPrinter) -> str:
     )
 
 
-def index_rows(derivation: Derivation, printer: LatexPrinter) -> Iterator[tuple[str, ...]]:
+def index_rows(
+    derivation: Derivation, printer: LatexPrinter, collected: Collected
+) -> Iterator[tuple[str, ...]]:
     """Every defined symbol with its meaning, unit and equation."""
     rotations = rotations_by_place(derivation)
     for chapter in derivation.chapters:
@@ -200,9 +257,11 @@ def index_rows(derivation: Derivation, printer: LatexPrinter) -> Iterator[tuple[
         turns = [e for k in places for e in rotations.get((chapter.id, k), ())]
         for equation in (*turns, *chapter.equations):
             quantity: Any = derivation.notation[equation.name]
+            origin = collected.origin.get(equation.id)
+            form = collected.forms.get(origin.name) if origin else None
             yield (
                 inline(used.doprint(equation.lhs)),
-                quantity.meaning,
+                part_of(equation, origin, form, used) if origin else quantity.meaning,
                 unit(quantity.unit),
                 f"[{equation.id}](#{equation.id})",
             )

@@ -18,7 +18,8 @@ from pne_sym.program.ir import Block, Counts
 
 _COUNT_HEAD = ("mul", "add", "div", "sqrt", "sum", "trig")
 _R = r"\mathbf R(X, V, A)"
-_W = r"\mathbf W_{\mathrm{ext}}"
+_N = r"\boldsymbol{\mathcal N}"
+_W = r"\mathbf F_{\mathrm{ext}}"
 
 
 def function_statements(bundle: Bundle, printer: LatexPrinter) -> Iterator[Statement]:
@@ -53,9 +54,9 @@ def function_statements(bundle: Bundle, printer: LatexPrinter) -> Iterator[State
                 r"\mathbf H_k^{\mathsf T} & \mathbf 0\end{bmatrix}",
                 r"\begin{bmatrix}\mathbf A \\ \boldsymbol\lambda\end{bmatrix}",
                 rf"= \begin{{bmatrix}}\mathbf H\,\boldsymbol\tau + {_W} - \mathbf Z \\",
-                r"-\boldsymbol\gamma\end{bmatrix},",
+                r"-\boldsymbol\iota\end{bmatrix},",
                 r"\qquad \mathbf H_k^{\mathsf T}\,\mathbf V = \mathbf 0,",
-                r"\quad \mathbf H_k^{\mathsf T}\,\mathbf A + \boldsymbol\gamma = \mathbf 0",
+                r"\quad \mathbf H_k^{\mathsf T}\,\mathbf A + \boldsymbol\iota = \mathbf 0",
             ),
         )
     else:
@@ -65,7 +66,7 @@ def function_statements(bundle: Bundle, printer: LatexPrinter) -> Iterator[State
         )
     yield Statement(
         "**Conditioning**: `condition` returns the singular values of H, moment rows divided by "
-        r"$`\ell_b`$ ($`\ell_l`$ where it vanishes), and for every leg the least of the values "
+        r"$`\ell_b`$ ($`\ell_s`$ where it vanishes), and for every leg the least of the values "
         "that are tested below, over its scale."
         + (" `condition_constrained` does so for [H H_k]." if constrained else ""),
         (),
@@ -85,14 +86,14 @@ def _passive_statements(coordinates: Coordinates) -> Iterator[Statement]:
         )
     elif a.passive and not a.idle:
         yield Statement(
-            "**Extra coordinates without a drive** are held by the drives of other joints: "
+            "**Passive extra coordinates** are held by the actuators of other joints: "
             f"{drives} has rank {size} for almost all parameters and poses, so that all rows are "
             "solved, and any of their accelerations has forces.",
             (),
         )
     elif a.passive and not a.is_coupled:
         yield Statement(
-            "**Extra coordinates without a drive** follow from their own rows (Eq. 7); "
+            "**Passive extra coordinates** follow from their own rows (Eq. 7); "
             "`complete_acceleration` fills in their accelerations before inverse dynamics:",
             (r"\mathbf M_{yy}\,\ddot{\mathbf y} = -\mathbf M_{yx}\,\mathbf A_x - \mathbf Z_y",),
         )
@@ -105,18 +106,18 @@ def _coupled_statements(coordinates: Coordinates) -> Iterator[Statement]:
     a, drives = coordinates.actuation, _drives(coordinates)
     unique = len(a.passive) == a.idle
     k = r"\mathbf H & \mathbf H_k" if coordinates.sizes["NC"] else r"\mathbf H"
-    gap = rf"\mathbf N^{{\mathsf T}}\,(\mathbf M\,\mathbf A + \mathbf Z - {_W})"
+    gap = rf"{_N}^{{\mathsf T}}\,(\mathbf M\,\mathbf A + \mathbf Z - {_W})"
     change = r"\delta\ddot{\mathbf y}"
     least = (
         rf"{change}^{{\mathsf T}}\,\mathbf M_{{yy}}\,{change} \rightarrow \min,",
-        rf"\qquad \mathbf N^{{\mathsf T}}\,\mathbf M_{{\cdot y}}\,{change} = -{gap}",
+        rf"\qquad {_N}^{{\mathsf T}}\,\mathbf M_{{\cdot y}}\,{change} = -{gap}",
     )
     yield Statement(
-        f"**Extra coordinates without a drive**: {drives} acts on their rows too, but has rank "
+        f"**Passive extra coordinates**: {drives} acts on their rows too, but has rank "
         f"{a.rank} of {coordinates.sizes['NV']} for almost all parameters and poses. With columns "
-        r"$`\mathbf N`$ that span what it leaves out, an acceleration has forces only where",
+        f"$`{_N}`$ that span what it leaves out, an acceleration has forces only where",
         (
-            rf"\mathbf N^{{\mathsf T}}\begin{{bmatrix}}{k}\end{{bmatrix}} = \mathbf 0,",
+            rf"{_N}^{{\mathsf T}}\begin{{bmatrix}}{k}\end{{bmatrix}} = \mathbf 0,",
             rf"\qquad {gap} = \mathbf 0.",
         ),
     )
@@ -172,8 +173,8 @@ def troubles(bundle: Bundle) -> tuple[str, ...]:
         )
     lines += [
         (
-            f"**Singular drives**: {_drives(bundle.coordinates)} has {_lacking(bundle)}; inverse "
-            "dynamics needs that, M, Z and H do not."
+            f"**Singular actuation**: {_drives(bundle.coordinates)} has {_lacking(bundle)}; "
+            "inverse dynamics needs that, M, Z and H do not."
         ),
         "**Singular masses**: "
         + (
@@ -210,7 +211,7 @@ def counts(bundle: Bundle) -> Table:
 
 def _gives(bundle: Bundle, name: str) -> str:
     if any(name == closure.function for closure in bundle.program.closures):
-        return "a step of the iteration that precedes the functions of X: gap and its derivative"
+        return "a step of the iteration before the functions of X: residual and its derivative"
     return FUNCTIONS[name]
 
 

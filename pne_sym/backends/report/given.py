@@ -43,12 +43,28 @@ class GivenWriter:
 
     def frames(self, info: LegTypeInfo | None) -> Table:
         """Axes of bodies, and how they are turned."""
-        rows = [
+        rows: list[tuple[str, ...]] = [
             (body.body, self._from(body), self._into_base(body))
             for body in self.axes.bodies.values()
             if body.leg_type == (info.name if info else "")
         ]
+        worked_in = self.axes.worked_in(info.name) if info else ()
+        rows += [self._worked_in(*told) for told in worked_in]
         return table(("Axes of", "What they are", "Into base axes"), rows)
+
+    def _worked_in(self, name: str, body: BodyFrame, axes: Sequence[Any]) -> tuple[str, ...]:
+        """Axes in which the code takes components besides, by those of their body."""
+        told = [
+            inline(self.printer.doprint(a))
+            if isinstance(a, Vector)
+            else f"({', '.join(map(str, a))})"
+            for a in axes
+        ]
+        return (
+            f"`{name.rpartition('.')[2]}`",
+            f"in code alone: x, y, z are {', '.join(told)} in axes of {body.body}",
+            "with these",
+        )
 
     def fixed_in(self, body: BodyFrame) -> str:
         """The sentence that tells what is turned by a rotation."""
@@ -82,7 +98,10 @@ class GivenWriter:
         for name in sorted(used & self.givens.keys() - {g.symbol.name for g in self.d.pose}):
             value = self.axes.of(self.givens[name])[1]
             used |= names_in(value) if isinstance(value, Vector) else set()
-        return used
+        told = self.axes.worked_in(leg_type) if leg_type else ()
+        return used | {
+            n for *_, axes in told for a in axes if isinstance(a, Vector) for n in names_in(a)
+        }
 
     def _rows(self, info: LegTypeInfo | None) -> Iterator[tuple[str, ...]]:
         defined = {e.name for e in self.d.equations()}

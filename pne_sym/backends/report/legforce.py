@@ -36,12 +36,12 @@ def leg_force_statements(
         "and a rest that inverse dynamics evaluates as a number, accelerations included:",
         display(_FORCE, [(*drives, *printer.terms(force))]),
     )
-    form = closed_form(derivation, collected, leg_type, force)
-    if form is not None:
+    closed = closed_force(derivation, collected, leg_type, printer)
+    if closed:
         yield Statement(
             "**The leg's force on the platform, Eq. 4.** In closed form, the acceleration "
             "collected:",
-            display(_FORCE, [(*drives, *collected_terms(form, printer))]),
+            closed,
         )
     yield from _moment(derivation, collected, leg_type, printer)
     final = _final(derivation, leg_type)
@@ -53,6 +53,18 @@ def leg_force_statements(
             "moves with the platform and is counted with the platform below.",
             (),
         )
+
+
+def closed_force(
+    derivation: Derivation, collected: Collected, leg_type: str, printer: LatexPrinter
+) -> tuple[str, ...]:
+    """Lines of Eq. 4 of a leg type; none where it has no closed form."""
+    force = next((o.value for o in _outputs(derivation, leg_type, "leg_force", 0)), None)
+    form = closed_form(derivation, collected, leg_type, force) if force is not None else None
+    if form is None:
+        return ()
+    drives = _applied(derivation, leg_type, printer, 0)
+    return display(_FORCE, [(*drives, *collected_terms(form, printer))])
 
 
 def _moment(

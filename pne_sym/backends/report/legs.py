@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.report.given import GivenWriter
-from pne_sym.backends.report.markdown import inline, table, unit
+from pne_sym.backends.report.markdown import inline, table
 from pne_sym.backends.report.mechanism import model_joints
 from pne_sym.backends.report.names import leg_indices, leg_title
 from pne_sym.backends.report.view import LegView, Table
@@ -34,11 +34,8 @@ def _leg(bundle: Bundle, info: LegTypeInfo, given: GivenWriter) -> LegView:
             [_joint_row(joints, j) for j in range(len(joints))],
         ),
         tuple(_closing(bundle, info)),
-        tuple(_solved(info)),
         given.frames(info),
         given.table(info),
-        parameter_table(derivation, info.name),
-        f"`legs[i]` with i = {ranges(info.indices)}, counted from 0",
     )
 
 
@@ -76,7 +73,7 @@ def _joint_row(joints: Sequence[Joint], at: int) -> tuple[str, ...]:
     before = joints[at - 1].axis if at else None
     roles = [
         word
-        for word, holds in (("driven", joint.actuated), ("extra coordinate", joint.extra))
+        for word, holds in (("actuated", joint.actuated), ("extra coordinate", joint.extra))
         if holds
     ]
     return (
@@ -152,7 +149,8 @@ def _conditions(bundle: Bundle, info: LegTypeInfo) -> str:
     return " and ".join(parts + [f"about moment direction {', '.join(turns)}"] * bool(turns))
 
 
-def _solved(info: LegTypeInfo) -> Iterator[str]:
+def solved(info: LegTypeInfo) -> Iterator[str]:
+    """How the inverse kinematics finds each joint."""
     reasons = dict(info.reasons)
     for j, method in enumerate(info.methods, 1):
         reason = f": {reasons[j]}" if reasons.get(j) else ", together with the others"
@@ -163,11 +161,16 @@ def _solved(info: LegTypeInfo) -> Iterator[str]:
 # ---- parameters ------------------------------------------------------------------------
 
 
-def parameter_table(derivation: Derivation, leg_type: str | None) -> Table:
+def parameter_table(derivation: Derivation) -> Table:
     """Live parameters, with their places in the full form."""
-    fields = [f for f in derivation.parameters.fields if f.leg_type == leg_type]
-    head = ("Name", "Meaning", "Unit", "Shape", "Path in the full form")
-    return table(head, (_parameter_row(f) for f in fields))
+    head = ("Name", "Shape", "Path in the full form")
+    return table(head, map(_parameter_row, derivation.parameters.fields))
+
+
+def places(derivation: Derivation) -> str:
+    """What i in paths stands for."""
+    told = [f"{ranges(info.indices)} for {leg_title(info)} legs" for info in derivation.leg_types]
+    return f"i is {', '.join(told)}, counted from 0"
 
 
 def _parameter_row(field: ParameterField) -> tuple[str, ...]:
@@ -175,13 +178,4 @@ def _parameter_row(field: ParameterField) -> tuple[str, ...]:
     path = field.paths[0]
     if field.leg_type:
         path = f"legs[i].{path.split('.', 1)[1]}"
-    meaning = field.meaning
-    if field.zeros and field.shape == (3,):
-        meaning += f"; zero along {', '.join(_AXES[k] for k in field.zeros)} by structure"
-    return (
-        f"`{field.name}`",
-        meaning,
-        unit(field.unit),
-        f"({shape})" if shape else "scalar",
-        f"`{path}`",
-    )
+    return f"`{field.name}`", f"({shape})" if shape else "scalar", f"`{path}`"

@@ -35,7 +35,7 @@ def summary(bundle: Bundle) -> str:
     stars = ", a star marks a joint whose displacement is an extra coordinate"
     return (
         f"The mechanism is {SPACES[manipulator.space.value]}, carried by {carried} in parallel. "
-        f"Legs are named from the base to the platform ({_letters(bundle)}); driven joints are "
+        f"Legs are named from the base to the platform ({_letters(bundle)}); actuated joints are "
         f"underlined{stars if bundle.coordinates.extras else ''}."
     )
 
@@ -152,7 +152,7 @@ def equation_of_motion(bundle: Bundle) -> tuple[str, ...]:
     lines = [
         r"\mathbf M(X)\,\mathbf A + \mathbf Z(X, V)",
         r"= \mathbf H(X)\,\boldsymbol\tau",
-        r"+ \mathbf W_{\mathrm{ext}}",
+        r"+ \mathbf F_{\mathrm{ext}}",
     ]
     if bundle.coordinates.sizes["NC"]:
         lines.append(r"+ \mathbf H_k(X)\,\boldsymbol\lambda")

@@ -37,7 +37,7 @@ def plain_names(text: str, derivation: Derivation) -> str:
     return text
 
 
-INDICES = "ilnprsu"
+INDICES = "ilnrsu"
 
 
 def leg_indices(derivation: Derivation) -> dict[str, str]:

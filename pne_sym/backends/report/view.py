@@ -68,29 +68,23 @@ class ChapterView:
 
 @dataclass(frozen=True)
 class LegView:
-    """A leg type: which legs, its structure, parameters, notation, inverse kinematics.
+    """A leg type: which legs, its structure, axes, notation.
 
     Attributes:
         title: architecture notation.
         legs: the sentence that tells which legs are of this type.
         joints: structure, joint by joint.
         closing: the platform joint, and the assembly branches.
-        solved: how each joint is found.
         frames: axes of its links.
         notation: symbols that are given.
-        parameters: live parameters.
-        place: the sentence that tells where the parameters stand.
     """
 
     title: str
     legs: str
     joints: Table
     closing: tuple[str, ...]
-    solved: tuple[str, ...]
     frames: Table
     notation: Table
-    parameters: Table
-    place: str
 
 
 @dataclass(frozen=True)
@@ -111,7 +105,9 @@ class ReportView:
         laws: why equations hold.
         frames: axes of base and platform.
         notation: symbols that are given, of the platform.
-        parameters: of the platform and the surroundings.
+        parameters: where the live parameters stand in the full form.
+        places: what i in paths stands for.
+        overview: forces of the legs, blocks of the equation of motion.
         legs: leg types.
         chapters: of the derivation.
         functions: how the functions use the equations.
@@ -135,6 +131,8 @@ class ReportView:
     frames: Table
     notation: Table
     parameters: Table
+    places: str
+    overview: tuple[Statement, ...]
     legs: tuple[LegView, ...]
     chapters: tuple[ChapterView, ...]
     functions: tuple[Statement, ...]

@@ -143,17 +143,19 @@ SPACES = {
 }
 
 CASES: dict[str, str] = {
-    "3.1": "Ordinary (Sec. 3.1): every leg that is driven has one actuator, and there are as many "
-    "as freedoms; H is square",
-    "3.2": "Hybrid (Sec. 3.2): a leg has several actuators; it has as many columns in H",
-    "3.3": "Static redundancy (Sec. 3.3): more legs than freedoms; H has a column for every driven "
-    "one, a free leg stays in M and Z",
-    "3.4": "Redundant actuation (Sec. 3.4): passive joints are driven besides; H has more columns "
-    "than rows",
-    "3.5": "Kinematic redundancy (Sec. 3.5): driven joints whose displacements the platform does "
-    "not determine; they are extra coordinates (Eq. 6)",
-    "3.6": "Passive freedoms (Sec. 3.6): undriven joints whose displacements the platform does not "
-    "determine; they are extra coordinates (Eq. 7)",
-    "3.7": "Constrained (Sec. 3.7): legs leave out directions in which the platform cannot move; "
-    "the reactions along them are the multipliers (Eqs. 35 to 37)",
+    "3.1": "Ordinary (Sec. 3.1): as many actuators as degrees of freedom, at most one in a leg. "
+    "Forces of the actuators and motion of the platform determine each other; H is square.",
+    "3.2": "Hybrid (Sec. 3.2): a leg has several actuators; it has as many columns in H.",
+    "3.3": "Static redundancy (Sec. 3.3): more legs than degrees of freedom. Actuators can work "
+    "against each other; a leg without one is moved along, and counts in M and Z alone.",
+    "3.4": "Redundant actuation (Sec. 3.4): more actuators than degrees of freedom, since joints "
+    "that could be passive are actuated. Forces can be shared; H has more columns than rows.",
+    "3.5": "Kinematic redundancy (Sec. 3.5): actuated joints that can move while the platform "
+    "stands. Their displacements are extra coordinates, with equations of their own (Eq. 6).",
+    "3.6": "Passive degrees of freedom (Sec. 3.6): passive joints that can move while the platform "
+    "stands, such as a leg that spins about itself. Their displacements are extra coordinates, "
+    "with equations of their own (Eq. 7).",
+    "3.7": "Constrained (Sec. 3.7): legs keep the platform from moving in some directions. It has "
+    "fewer degrees of freedom than coordinates; the reactions along these directions are the "
+    "multipliers (Eqs. 35 to 37).",
 }
