@@ -21,9 +21,11 @@ from pne_sym.vector.nodes import (
     Transpose,
     Vector,
     VectorAdd,
+    VectorLegSum,
     VectorScale,
     VectorSymbol,
     ZeroVector,
+    sum_over_legs,
     vector_sum,
 )
 from pne_sym.vector.rules import (
@@ -106,6 +108,8 @@ class _Collector:
             return self._scaled(*expr.args)
         if isinstance(expr, Cross):
             return self._cross(*expr.args)
+        if isinstance(expr, VectorLegSum):
+            return self._over_legs(*expr.args)
         if isinstance(expr, Apply) and not self.depends(expr.args[0]):
             tensor = expr.args[0]
             coefficients, remainder = self.vector(expr.args[1])
@@ -121,6 +125,17 @@ class _Collector:
         if all(isinstance(r, Vector) for r in remainders):
             return total, vector_sum(remainders)
         return total, sp.Add(*remainders)
+
+    def _over_legs(self, body: Any, leg_type: Any) -> tuple[Coefficients, Any]:
+        """A sum over legs, of unknowns that are the same for all of them."""
+        first = len(self.steps)
+        coefficients, remainder = self.vector(body)
+        self.steps[first:] = [
+            RuleApplication(s.rule, *(sum_over_legs(x, leg_type.name) for x in (s.before, s.after)))
+            for s in self.steps[first:]
+        ]
+        summed = {x: sum_over_legs(c, leg_type.name) for x, c in coefficients.items()}
+        return summed, sum_over_legs(remainder, leg_type.name)
 
     def _scaled(self, factor: Any, vector: Any) -> tuple[Coefficients, Any]:
         if not self.depends(factor):

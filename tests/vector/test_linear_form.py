@@ -134,7 +134,6 @@ def test_scalar_unknowns() -> None:
         Dot(A, X) * Dot(B, Y) * A,
         Apply(Outer(X, A), B),
         Skew(X) @ A,
-        sum_over_legs(X, "ups"),
         sum_over_legs(Dot(A, X), "ups"),
     ],
     ids=str,
@@ -143,6 +142,20 @@ def test_refused(expr: Any) -> None:
     """What is not linear, or not seen to be so, is refused, never answered wrongly."""
     with pytest.raises(NotLinearError):
         linear_form(expr, [X, Y, S, R])
+
+
+def test_sums_over_legs() -> None:
+    """An unknown that all legs share is collected leg by leg, and so are the rules used."""
+    form = linear_form(A + sum_over_legs(S * B - Cross(A, X), "ups"), [X, S])
+    assert form.coefficients == {
+        X: sum_over_legs(-Skew(A), "ups"),
+        S: sum_over_legs(B, "ups"),
+    }
+    assert form.remainder == A
+    (step,) = form.steps
+    assert step.rule is RULE_II
+    assert step.before == sum_over_legs(Cross(A, X), "ups")
+    assert step.after == sum_over_legs(Skew(A) @ X, "ups")
 
 
 def test_known_names_are_not_unknowns_themselves() -> None:

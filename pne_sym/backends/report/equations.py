@@ -97,13 +97,14 @@ class ChapterWriter:
 
     def _headline(self, equation: Equation, printer: LatexPrinter) -> str:
         origin = self.collected.origin.get(equation.id)
-        if origin is not None:
-            return self._part_headline(equation, origin, printer)
-        title = equation.title[:1].upper() + equation.title[1:]
-        reference = f", {equation.reference}" if equation.reference else ""
         quantity = self.derivation.notation[equation.name]
+        part = self._part_headline(equation, origin, printer) if origin is not None else ""
+        if part and quantity.leg_type:
+            return f"{_capital(part)}."
+        reference = f", {equation.reference}" if equation.reference else ""
         measure = f" [{unit(quantity.unit)}]" if quantity.unit not in ("-", "") else ""
-        return f"{title}{measure}. *{_capital(equation.law.value)}{reference}.*"
+        title = f"{_capital(equation.title)}{measure}" + (f": {part}" if part else "")
+        return f"{title}. *{_capital(equation.law.value)}{reference}.*"
 
     def _part_headline(self, equation: Equation, origin: Equation, printer: LatexPrinter) -> str:
         name = inline(printer.doprint(origin.lhs))
@@ -111,8 +112,8 @@ class ChapterWriter:
         form = self.collected.forms.get(origin.name)
         for unknown, value in form.coefficients.items() if form else ():
             if value == equation.lhs:
-                return f"Coefficient of {inline(printer.doprint(unknown))} in {where}."
-        return f"Remainder of {where}."
+                return f"coefficient of {inline(printer.doprint(unknown))} in {where}"
+        return f"remainder of {where}"
 
     def _steps(self, equation: Equation, printer: LatexPrinter) -> Table | None:
         if not equation.steps:
