@@ -17,7 +17,6 @@ from pne_sym.vector.nodes import (
     Cross,
     Dot,
     Identity,
-    PlaneCross,
     Transpose,
     Vector,
     VectorAdd,
@@ -186,7 +185,7 @@ class _Collector:
             factor = expr / dependent[0]
             coefficients, remainder = self.scalar(dependent[0])
             return {x: c * factor for x, c in coefficients.items()}, factor * remainder
-        if isinstance(expr, Dot | PlaneCross):
+        if isinstance(expr, Dot):
             return self._product(expr)
         raise NotLinearError(f"not linear in the unknowns: {expr}")
 
@@ -194,21 +193,9 @@ class _Collector:
         a, b = expr.args
         if self.depends(a) and self.depends(b):
             raise NotLinearError("a product of two vectors that both hold unknowns")
-        fixed, moving, sign = (a, b, 1) if self.depends(b) else (b, a, -1)
+        fixed, moving = (a, b) if self.depends(b) else (b, a)
         coefficients, remainder = self.vector(moving)
-        if isinstance(expr, Dot):
-            return (
-                {x: _dot(fixed, c, x) for x, c in coefficients.items()},
-                Dot(fixed, remainder),
-            )
-        turned = RULE_II.plane_coefficient(fixed) * sign
-        result: Coefficients = {}
-        for x, c in coefficients.items():
-            result[x] = _dot(turned, c, x)
-            if isinstance(x, VectorSymbol):
-                before = PlaneCross(fixed, c @ x) * sign
-                self.steps.append(RuleApplication(RULE_II, before, Dot(result[x], x)))
-        return result, Dot(turned, remainder)
+        return {x: _dot(fixed, c, x) for x, c in coefficients.items()}, Dot(fixed, remainder)
 
 
 def _dot(fixed: Any, coefficient: Any, unknown: Any) -> Any:
