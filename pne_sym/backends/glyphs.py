@@ -52,10 +52,6 @@ class Glyph:
         """With the tilde of a cross-product tensor."""
         return replace(self, base=rf"\tilde{{{self.base}}}")
 
-    def perp(self) -> Glyph:
-        """Turned by a right angle."""
-        return replace(self, sub=f"{self.sub}\\perp")
-
     def indexed(self, index: str) -> Glyph:
         """With one more index."""
         return replace(self, sub=f"{self.sub},{index}" if self.sub else index)

@@ -102,7 +102,7 @@ class LatexPrinter:
             return self._scaled(*expr.args)
         if isinstance(expr, n.VectorLegSum | n.TensorLegSum | n.LegSum):
             return self._leg_sum(*expr.args)
-        if isinstance(expr, n.Vector | n.Tensor | n.Dot | n.PlaneCross | n.DualScalar):
+        if isinstance(expr, n.Vector | n.Tensor | n.Dot | n.DualScalar):
             return self._node(expr)
         if isinstance(expr, sp.Symbol):
             return self._symbol(expr)
@@ -124,9 +124,7 @@ class LatexPrinter:
             type(n.ZeroTensor): lambda: Term(r"\mathbf 0"),
             type(n.Identity): lambda: Term(r"\mathbf E"),
             n.Cross: lambda a, b: self._between(a, r"\times", b),
-            n.PlaneCross: lambda a, b: self._between(a, r"\times", b),
             n.Dot: self._dot,
-            n.Perp: self._perp,
             n.Skew: self._skew,
             n.Apply: self._juxtaposed,
             n.Compose: self._juxtaposed,
@@ -175,11 +173,6 @@ class LatexPrinter:
         if a == b:
             return Term(rf"{norm_bars(self.doprint(a))}^2")
         return self._between(a, r"\cdot", b)
-
-    def _perp(self, a: Any) -> Term:
-        if isinstance(a, n.VectorSymbol):
-            return Term(str(self.glyph(a).perp()))
-        return Term(f"{brackets(self.doprint(a))}_\\perp")
 
     def _skew(self, a: Any) -> Term:
         if isinstance(a, n.VectorSymbol):
@@ -235,7 +228,7 @@ class LatexPrinter:
             return Term("1", negative)
         if len(over) == 1 and len(items) == 1:
             base, exponent = items[0]
-            if exponent == 1 and isinstance(base, n.Dot | n.PlaneCross | sp.Add):
+            if exponent == 1 and isinstance(base, n.Dot | sp.Add):
                 sole = (
                     self._node(base)
                     if not isinstance(base, sp.Add)
@@ -296,5 +289,5 @@ def _split(factor: Any) -> tuple[Any, list[tuple[Any, Any]], list[tuple[Any, Any
             continue
         base, exponent = arg.as_base_exp() if arg.is_Pow else (arg, sp.S.One)
         (below if exponent < 0 else above).append((base, abs(exponent)))
-    above.sort(key=lambda item: isinstance(item[0], n.Dot | n.PlaneCross | sp.Add))
+    above.sort(key=lambda item: isinstance(item[0], n.Dot | sp.Add))
     return number, above, below

@@ -74,7 +74,7 @@ EQUATIONS = _passages("""
 31 | 5.2 | RULES                         | 3-PRPS: force of a leg with the acceleration collected
 32 | 5.2 | NEWTON ASSEMBLY RATE          | forces on the platform
 33 | 5.2 | EULER ASSEMBLY                | moments on the platform about its origin
-34 | 5.2 | ASSEMBLY NEWTON EULER RULES   | equations of motion: M, Z and H
+34 | 5.2 | ASSEMBLY RULES                | equations of motion: M, Z and H
 35 | 5.4 | GEOMETRY RECIPROCITY          | 3-RPS: force of a leg with a constraint force
 36 | 5.4 | ASSEMBLY                      | 3-RPS: equations of motion with constraint forces
 37 | 5.4 | LOOP_CLOSURE                  | 3-RPS: the constraints

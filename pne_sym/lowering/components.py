@@ -299,10 +299,6 @@ class Lowering:
 
         return (entry(0), entry(1), entry(2))
 
-    def _vector_perp(self, expr: Any, frame: str, hint: str) -> Triple:
-        x, y, _ = self.vector(expr.args[0], frame)
-        return (-y, x, sp.S.Zero)
-
     def _vector_total(self, expr: Any, frame: str, hint: str) -> Triple:
         value, leg_type = expr.args
         v = self.vector(value, frame, f"{hint}_leg" if hint else "")
@@ -440,8 +436,6 @@ class Lowering:
             return self._scalar_symbol(expr)
         if isinstance(expr, n.Dot):
             return self._dot(expr, hint)
-        if isinstance(expr, n.PlaneCross):
-            return self._plane_cross(expr, hint)
         if isinstance(expr, n.DualScalar):
             return self._moment_part(expr)
         if isinstance(expr, n.LegSum):
@@ -540,11 +534,6 @@ class Lowering:
         u, v = self.vector(a, frame), self.vector(c, frame)
         return self.b.add([self.b.mul(x, y) for x, y in zip(u, v, strict=True)], hint, named=True)
 
-    def _plane_cross(self, expr: Any, hint: str) -> Atom:
-        frame = self._frames_of(expr)[0]
-        u, v = self.vector(expr.args[0], frame), self.vector(expr.args[1], frame)
-        return self.b.add((self.b.mul(u[0], v[1]), -self.b.mul(u[1], v[0])), hint)
-
 
 _VECTOR_OPERATIONS: dict[type, Any] = {
     n.VectorAdd: Lowering._vector_add,
@@ -552,7 +541,6 @@ _VECTOR_OPERATIONS: dict[type, Any] = {
     n.Cross: Lowering._vector_cross,
     n.Apply: Lowering._vector_apply,
     n.Axial: Lowering._vector_axial,
-    n.Perp: Lowering._vector_perp,
     n.DualVector: Lowering._vector_dual,
     n.VectorLegSum: Lowering._vector_total,
 }

@@ -16,6 +16,7 @@ from pne_sym.mechanics.completion import LeftOut
 from pne_sym.mechanics.leg_dynamics import LegDynamics
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.linear_writer import LegMotion
+from pne_sym.mechanics.platform_blocks import BlockWriter
 from pne_sym.mechanics.platform_motion import PlatformMotion
 from pne_sym.model.kinematics import TaskSpace
 from pne_sym.vector import (
@@ -24,13 +25,11 @@ from pne_sym.vector import (
     Dot,
     Identity,
     Outer,
-    Skew,
     TensorSymbol,
     Transpose,
     Vector,
     ZeroTensor,
     ZeroVector,
-    linear_form,
     sum_over_legs,
     tensor_sum,
     vector_sum,
@@ -183,7 +182,7 @@ class PlatformWriter:
                 r"\boldsymbol\mu_p",
                 "inertia moment of the platform less that of its weight",
                 Law.EULER,
-                body="platform",
+                body="base" if space.planar else "platform",
                 reference="Eq. 33",
             )
         self._required()
@@ -231,130 +230,18 @@ class PlatformWriter:
     def blocks(self) -> None:
         """Eq. 4 route: M, Z, H."""
         self.book.chapter("M", "M, Z and H", _BLOCKS)
-        self._mass_blocks()
-        self._bias_blocks()
+        blocks = BlockWriter(self.book, self.p, self.legs, self.mass, self.moment).write()
+        for name, row, column in (("tt", 0, 0), ("ta", 0, 3), ("aa", 3, 3)):
+            if name in blocks:
+                diagonal = row == column
+                self._tensor_output(
+                    "M", blocks[name], row, column, mirrored=not diagonal, symmetric=diagonal
+                )
+        for name, first in (("Z_t", 0), ("Z_a", 3)):
+            if name in blocks:
+                self._vector_output("Z", blocks[name], first)
         self._extra_blocks()
         self._columns()
-
-    def _mass_blocks(self) -> None:
-        book, p, space = self.book, self.p, self.space
-        if space.translates:
-            tt = book.define(
-                "M_tt",
-                self.total(lambda leg: leg.dynamics.Q, self.mass * Identity),
-                r"\mathbf M_{tt}",
-                "translational block of M",
-                Law.ASSEMBLY,
-                body="base",
-                symmetric=True,
-                reference="Eq. 34",
-            )
-            self._tensor_output("M", tt, 0, 0, symmetric=True)
-        if not space.rotates:
-            return
-        if space.translates:
-            form = linear_form(Cross(p.alpha, self.moment), [p.alpha])
-            coupling = self.total(
-                lambda leg: (
-                    -(leg.dynamics.Q @ Skew(leg.g.platform_point))
-                    - self._of_alpha(leg.dynamics.form)
-                ),
-                form.coefficients[p.alpha],
-            )
-            ta = book.define(
-                "M_ta",
-                coupling,
-                r"\mathbf M_{t\alpha}",
-                "coupling block of M",
-                Law.RULES,
-                body="base",
-                linear=form,
-                expanded=Cross(p.alpha, self.moment),
-                reference="Eq. 34",
-            )
-            self._tensor_output("M", ta, 0, 3, mirrored=True)
-
-        def rotary(leg: Leg) -> Any:
-            arm = Skew(leg.g.platform_point)
-            return (
-                -(arm @ (leg.dynamics.Q @ arm))
-                - arm @ self._of_alpha(leg.dynamics.form)
-                + self._of_a_p(leg) @ arm
-                - self._of_alpha(leg.dynamics.moment_form)
-            )
-
-        aa = book.define(
-            "M_aa",
-            self.total(rotary, self.inertia),
-            r"\mathbf M_{\alpha\alpha}",
-            "rotational block of M",
-            Law.ASSEMBLY,
-            body="base",
-            symmetric=True,
-            reference="Eq. 34",
-        )
-        self._tensor_output("M", aa, 3, 3, symmetric=True)
-
-    def _of_alpha(self, form: Any) -> Any:
-        """Coefficient of the platform's angular acceleration (legs that transmit moments)."""
-        return form.coefficients.get(self.p.alpha, ZeroTensor) if form else ZeroTensor
-
-    def _of_a_p(self, leg: Leg) -> Any:
-        """Coefficient of a_p in the moment that the leg transmits."""
-        return leg.dynamics.moment_form.coefficients.get(leg.motion.a_p, ZeroTensor)
-
-    def _bias_blocks(self) -> None:
-        book, p, space = self.book, self.p, self.space
-        h, omega = self.moment, p.omega
-        if space.translates:
-            rest = Cross(omega, Cross(omega, h)) - self.mass * p.gravity
-            forms = (p.spin @ h - self.mass * p.gravity,) if space.rotates else ()
-            base = book.define(
-                "Z_p",
-                rest,
-                r"\mathbf Z_p",
-                "centripetal force and weight of the platform",
-                Law.NEWTON,
-                body="base",
-                forms=forms,
-                reference="Eq. 34",
-            )
-            zt = book.define(
-                "Z_t",
-                self.total(lambda leg: leg.dynamics.U, base),
-                r"\mathbf Z_t",
-                "translational part of Z",
-                Law.ASSEMBLY,
-                body="base",
-                reference="Eq. 34",
-            )
-            self._vector_output("Z", zt, 0)
-        if space.rotates:
-            base = book.define(
-                "Z_q",
-                Cross(omega, self.inertia @ omega) - Cross(h, p.gravity),
-                r"\mathbf Z_q",
-                "gyroscopic moment and moment of the weight of the platform",
-                Law.EULER,
-                body="platform",
-                reference="Eq. 34",
-            )
-            za = book.define(
-                "Z_a",
-                self.total(
-                    lambda leg: (
-                        Cross(leg.g.platform_point, leg.dynamics.U)
-                        - leg.dynamics.moment_form.remainder
-                    ),
-                    base,
-                ),
-                r"\mathbf Z_\alpha",
-                "rotational part of Z",
-                Law.ASSEMBLY,
-                body="base",
-                reference="Eq. 34",
-            )
-            self._vector_output("Z", za, 3)
 
     def _extra_blocks(self) -> None:
         """Rows and columns of the extra coordinates (Eqs. 6, 7)."""
@@ -633,9 +520,10 @@ class PlatformWriter:
 
 
 _BLOCKS = (
-    "With each leg's force in closed form (Eq. 4), the coefficients of the platform's acceleration "
-    "are the blocks of M, the rest is Z, and the reciprocal vectors of the driven joints are the "
-    "columns of H."
+    "The legs' forces are put into the equations of the platform in closed form (Eq. 4), with the "
+    "accelerations that the platform gives to their connection points. Rules I and II collect the "
+    "platform's acceleration: its coefficients are the blocks of M, what remains is Z. The "
+    "reciprocal vectors of the actuated joints are the columns of H."
 )
 
 __all__ = ["Axial", "Leg", "PlatformWriter", "TensorSymbol", "Transpose", "tensor_sum"]

@@ -17,7 +17,6 @@ from pne_sym.lowering.inputs import leg_inputs, unpack
 from pne_sym.vector import (
     Dot,
     LegSum,
-    PlaneCross,
     TensorLegSum,
     TensorSymbol,
     VectorLegSum,
@@ -224,7 +223,7 @@ class State:
         args = getattr(expr, "args", ())
         if hasattr(expr, "name") or not args:
             return expr
-        if isinstance(expr, Dot | PlaneCross):
+        if isinstance(expr, Dot):
             givens = [self.structure.givens.get(name) for name in sorted(names_in(expr))]
             if all(given is not None and len(given.components) > 1 for given in givens):
                 return self._named(expr, self._product([g for g in givens if g], expr, leg))

@@ -124,9 +124,7 @@ def _leg_sum(value: Any, leg_type: Any) -> _Piece:
 
 _NODES: dict[type, Any] = {
     n.Cross: lambda a, b: (f"{_wrap(a, _PRODUCT)} x {_wrap(b, _PRODUCT)}", _CROSS),
-    n.PlaneCross: lambda a, b: (f"{_wrap(a, _PRODUCT)} x {_wrap(b, _PRODUCT)}", _CROSS),
     n.Dot: lambda a, b: (f"{_wrap(a, _PRODUCT)} . {_wrap(b, _PRODUCT)}", _CROSS),
-    n.Perp: lambda a: (f"perp({plain(a)})", _ATOM),
     n.Skew: lambda a: (f"[{plain(a)}]x", _ATOM),
     n.Axial: lambda a: (f"axial({plain(a)})", _ATOM),
     n.Apply: lambda a, b: (f"{_wrap(a, _ATOM)} * {_wrap(b, _ATOM)}", _PRODUCT),

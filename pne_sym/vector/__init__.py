@@ -1,7 +1,7 @@
 """Abstract vector algebra on SymPy: nodes, Rules I and II, linear forms.
 
 Vectors and tensors are coordinate-free SymPy objects; scalars are ordinary
-SymPy expressions that may contain `Dot` and `PlaneCross` of vectors.  Nothing
+SymPy expressions that may contain `Dot` of vectors.  Nothing
 here knows mechanics.
 """
 
@@ -17,8 +17,6 @@ from pne_sym.vector.nodes import (
     Identity,
     LegSum,
     Outer,
-    Perp,
-    PlaneCross,
     Skew,
     Tensor,
     TensorAdd,
@@ -54,8 +52,6 @@ __all__ = [
     "LegSum",
     "LinearForm",
     "Outer",
-    "Perp",
-    "PlaneCross",
     "Rule",
     "RuleApplication",
     "RuleI",

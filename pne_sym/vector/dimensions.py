@@ -156,8 +156,6 @@ _PRODUCTS = (
     n.VectorScale,
     n.TensorScale,
     n.Cross,
-    n.Perp,
-    n.PlaneCross,
     n.Dot,
     n.Apply,
     n.Compose,

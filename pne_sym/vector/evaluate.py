@@ -76,8 +76,6 @@ _OPERATIONS: dict[type, Any] = {
     n.VectorScale: lambda s, a: s * a,
     n.TensorScale: lambda s, a: s * a,
     n.Cross: np.cross,
-    n.Perp: lambda a: np.array([-a[1], a[0], *np.zeros(len(a) - 2)]),
-    n.PlaneCross: lambda a, b: a[0] * b[1] - a[1] * b[0],
     n.Dot: lambda a, b: float(np.dot(a, b)),
     n.Apply: lambda t, a: t @ a,
     n.Compose: lambda t, s: t @ s,

@@ -17,13 +17,14 @@ from pne_sym.vector.nodes import (
     Cross,
     Dot,
     Identity,
-    PlaneCross,
     Transpose,
     Vector,
     VectorAdd,
+    VectorLegSum,
     VectorScale,
     VectorSymbol,
     ZeroVector,
+    sum_over_legs,
     vector_sum,
 )
 from pne_sym.vector.rules import (
@@ -106,6 +107,8 @@ class _Collector:
             return self._scaled(*expr.args)
         if isinstance(expr, Cross):
             return self._cross(*expr.args)
+        if isinstance(expr, VectorLegSum):
+            return self._over_legs(*expr.args)
         if isinstance(expr, Apply) and not self.depends(expr.args[0]):
             tensor = expr.args[0]
             coefficients, remainder = self.vector(expr.args[1])
@@ -121,6 +124,17 @@ class _Collector:
         if all(isinstance(r, Vector) for r in remainders):
             return total, vector_sum(remainders)
         return total, sp.Add(*remainders)
+
+    def _over_legs(self, body: Any, leg_type: Any) -> tuple[Coefficients, Any]:
+        """A sum over legs, of unknowns that are the same for all of them."""
+        first = len(self.steps)
+        coefficients, remainder = self.vector(body)
+        self.steps[first:] = [
+            RuleApplication(s.rule, *(sum_over_legs(x, leg_type.name) for x in (s.before, s.after)))
+            for s in self.steps[first:]
+        ]
+        summed = {x: sum_over_legs(c, leg_type.name) for x, c in coefficients.items()}
+        return summed, sum_over_legs(remainder, leg_type.name)
 
     def _scaled(self, factor: Any, vector: Any) -> tuple[Coefficients, Any]:
         if not self.depends(factor):
@@ -171,7 +185,7 @@ class _Collector:
             factor = expr / dependent[0]
             coefficients, remainder = self.scalar(dependent[0])
             return {x: c * factor for x, c in coefficients.items()}, factor * remainder
-        if isinstance(expr, Dot | PlaneCross):
+        if isinstance(expr, Dot):
             return self._product(expr)
         raise NotLinearError(f"not linear in the unknowns: {expr}")
 
@@ -179,21 +193,9 @@ class _Collector:
         a, b = expr.args
         if self.depends(a) and self.depends(b):
             raise NotLinearError("a product of two vectors that both hold unknowns")
-        fixed, moving, sign = (a, b, 1) if self.depends(b) else (b, a, -1)
+        fixed, moving = (a, b) if self.depends(b) else (b, a)
         coefficients, remainder = self.vector(moving)
-        if isinstance(expr, Dot):
-            return (
-                {x: _dot(fixed, c, x) for x, c in coefficients.items()},
-                Dot(fixed, remainder),
-            )
-        turned = RULE_II.plane_coefficient(fixed) * sign
-        result: Coefficients = {}
-        for x, c in coefficients.items():
-            result[x] = _dot(turned, c, x)
-            if isinstance(x, VectorSymbol):
-                before = PlaneCross(fixed, c @ x) * sign
-                self.steps.append(RuleApplication(RULE_II, before, Dot(result[x], x)))
-        return result, Dot(turned, remainder)
+        return {x: _dot(fixed, c, x) for x, c in coefficients.items()}, Dot(fixed, remainder)
 
 
 def _dot(fixed: Any, coefficient: Any, unknown: Any) -> Any:

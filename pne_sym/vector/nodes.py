@@ -143,19 +143,6 @@ class Cross(Vector):
         return scale(factor_a * factor_b, super().__new__(cls, a, b))
 
 
-class Perp(Vector):
-    """A vector of the plane turned by +90 degrees."""
-
-    def __new__(cls, a: Vector) -> Vector:
-        """Build simplified."""
-        if a == ZeroVector:
-            return ZeroVector
-        factor, a = split_scale(a)
-        if isinstance(a, Perp):
-            return scale(-factor, a.args[0])
-        return scale(factor, super().__new__(cls, a))
-
-
 class Apply(Vector):
     """A tensor applied to a vector (build with `@`)."""
 
@@ -254,18 +241,6 @@ class Dot(_VectorScalar):
             return sp.S.Zero
         factor_a, a = split_scale(a)
         factor_b, b = split_scale(b)
-        return factor_a * factor_b * super().__new__(cls, a, b)
-
-
-class PlaneCross(_VectorScalar):
-    """The cross product a x b = a_1 b_2 - a_2 b_1 of two vectors of the plane."""
-
-    def __new__(cls, a: Vector, b: Vector) -> Scalar:
-        """Build simplified."""
-        factor_a, a = split_scale(a)
-        factor_b, b = split_scale(b)
-        if ZeroVector in (a, b) or a == b:
-            return sp.S.Zero
         return factor_a * factor_b * super().__new__(cls, a, b)
 
 

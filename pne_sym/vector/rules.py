@@ -10,7 +10,7 @@ from typing import Any, Protocol
 
 import sympy as sp
 
-from pne_sym.vector.nodes import Cross, Dot, Identity, Outer, Perp, Skew, Tensor, Vector, scale
+from pne_sym.vector.nodes import Cross, Dot, Identity, Outer, Skew, Tensor, Vector, scale
 
 
 class Rule(Protocol):
@@ -34,18 +34,14 @@ class RuleI:
 
 @dataclass(frozen=True)
 class RuleII:
-    """a x x = skew(a) x in space; a x x = perp(a)^T x in the plane."""
+    """a x x = skew(a) x."""
 
     name: str = "Rule II"
     statement: str = r"\mathbf a\times\mathbf x=\tilde{\mathbf a}\,\mathbf x"
 
     def coefficient(self, a: Vector) -> Tensor:
-        """The tensor skew(a) that replaces a x (.) in space."""
+        """The tensor skew(a) that replaces a x (.)."""
         return Skew(a)
-
-    def plane_coefficient(self, a: Vector) -> Vector:
-        """The vector perp(a) with a x x = perp(a) . x in the plane."""
-        return Perp(a)
 
 
 RULE_I = RuleI()
@@ -74,7 +70,7 @@ def apply_rule_i(a: Vector, x: Vector, b: Vector) -> tuple[Tensor, RuleApplicati
 
 
 def apply_rule_ii(a: Vector, x: Vector, factor: sp.Expr) -> tuple[Tensor, RuleApplication]:
-    """Rule II on factor (a x x) in space, recorded."""
+    """Rule II on factor (a x x), recorded."""
     coefficient = RULE_II.coefficient(a) * factor
     return coefficient, RuleApplication(RULE_II, scale(factor, Cross(a, x)), coefficient @ x)
 

@@ -21,14 +21,13 @@ from tests.random.effects import with_effects
 LEDGER = """
 ASSEMBLY     | Eq. 32                | R_t
 ASSEMBLY     | Eq. 33                | R_a
-ASSEMBLY     | Eq. 34                | H_a_# Hk_a_# M_aa M_tt Z_a Z_t
+ASSEMBLY     | Eq. 34                | H_a_# Hk_a_#
 ASSEMBLY     | Eqs. 6, 7             | M_ya_#
 DEFINITION   |                       | B_# B_#_o B_p Jc_# W_# W_p hc_#
 ENERGY       |                       | potential
 ENERGY       | beyond the paper      | stored_#
 EULER        | Eq. 2                 | mu_#
 EULER        | Eq. 33                | mu_p
-EULER        | Eq. 34                | Z_q
 EULER        | Sec. 2.5, step 1.3    | N_#
 EULER        |                       | L_c_# L_c_#_#
 FREEDOM      | Eqs. 6, 7             | P_#
@@ -51,7 +50,6 @@ NEWTON       |                       | P_c_# T_#
 NEWTON       | Eq. 1                 | f_# phi_#
 NEWTON       | Eq. 3                 | c_true
 NEWTON       | Eq. 32                | f_p
-NEWTON       | Eq. 34                | Z_p
 RATE         |                       | S_dot_rest a_o_# alpha_# beta_# eta_# etad_# nd_m# omega_#
 RATE         |                       | rel zeta_#
 RATE         | Eq. 23                | S_ddot a_p u_#
@@ -67,7 +65,7 @@ RECIPROCITY  | Sec. 2.2, joint table | G_m G_m# m#_w_# o_# w_#
 RECIPROCITY  | Sec. 2.3              | G w_#
 REDUCTION    | Eq. 3                 | c c_m
 ROTOR        | beyond the paper      | rotor_# motor_#
-RULES        | Eq. 34                | M_ta
+RULES        | Eq. 34                | M_tt M_ta M_aa Z_p Z_t Z_q Z_a
 RULES        | Eq. 4                 | Q U
 SPRING       | beyond the paper      | spring_#
 """

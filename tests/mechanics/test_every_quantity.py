@@ -126,6 +126,7 @@ class Examination:
                         self.leg_line(equation, index, names)
         for index in range(len(self.main.legs)):
             self.linear_forms(index)
+        self.collected_platform()
         return self.account
 
     # ---- one line -------------------------------------------------------------------------
@@ -207,6 +208,23 @@ class Examination:
             )
             at_rest = PlatformFacts([Facts(names) for names in still.legs])
             self.account.compare(name, value, PLATFORM[AT_REST[name]](at_rest))
+
+    def collected_platform(self) -> None:
+        """Forces and moments of the platform by M and Z, at all accelerations.
+
+        Not where there are extra coordinates, whose accelerations act on the platform too.
+        """
+        if any(facts.extras for facts in self.facts):
+            return
+        for name, form in self.derivation.collected.items():
+            if form is None or self.derivation.notation[name].leg_type:
+                continue
+            for s in self.others:
+                parts = [s.platform.value(c @ x) for x, c in form.coefficients.items()]
+                total = sum(parts) + s.platform.value(form.remainder)
+                seen = self._components("linear" if name in ("f_p", "R_t") else "angular")
+                self.account.compare(f"{name} collected", total[seen], s.platform[name][seen])
+                self.account.independent.add(name)
 
     def of_a_leg(self, equation: Equation) -> None:
         """A quantity per leg in a chapter on the platform: columns of H, rows of extras."""

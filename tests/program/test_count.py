@@ -156,6 +156,25 @@ def test_counts_are_those_of_the_code(name: str) -> None:
         assert comment in text
 
 
+CEILINGS = {
+    "delta": (1437, 1068),
+    "planar_3rpr": (391, 315),
+    "planar_3rrr": (664, 534),
+    "planar_mixed": (563, 428),
+    "stewart": (2862, 1980),
+    "tripod_3upu": (2778, 1689),
+}
+"""Operations of `dynamics` and of `required`, roots and divisions included."""
+
+
+@pytest.mark.parametrize("name", sampled(CEILINGS, 4))
+def test_operations_do_not_grow(name: str) -> None:
+    compiled = bundle(catalogue(name))
+    for function, most in zip(("dynamics", "required"), CEILINGS[name], strict=True):
+        counted = count_function(compiled.program.functions[function], compiled.leg_counts)
+        assert counted.total <= most, function
+
+
 def test_counts_of_expressions() -> None:
     x, y, z = sp.symbols("x y z", real=True)
     cases: list[tuple[Any, Counts]] = [

@@ -1,7 +1,4 @@
-"""Random expressions of the vector algebra, and numbers for the names in them.
-
-In the plane vectors have three components of which the last is zero.
-"""
+"""Random expressions of the vector algebra, and numbers for the names in them."""
 
 from __future__ import annotations
 
@@ -19,8 +16,6 @@ from pne_sym.vector import (
     Identity,
     LinearForm,
     Outer,
-    Perp,
-    PlaneCross,
     Skew,
     TensorSymbol,
     Transpose,
@@ -58,16 +53,13 @@ KNOWN = {
 }
 
 
-def random_values(rng: np.random.Generator, *, plane: bool) -> dict[str, Any]:
+def random_values(rng: np.random.Generator) -> dict[str, Any]:
     """Numbers for every name; `z` and `w` by their linear forms."""
-    last = 0.0 if plane else 1.0
     values: dict[str, Any] = {}
     for symbol in (*VECTORS, *VECTOR_UNKNOWNS, *map(VectorSymbol, ("czs", "z0", "cwx"))):
-        values[symbol.name] = rng.uniform(-2.0, 2.0, 3) * (1.0, 1.0, last)
+        values[symbol.name] = rng.uniform(-2.0, 2.0, 3)
     for tensor in (*TENSORS, TensorSymbol("Czx")):
         matrix = rng.uniform(-2.0, 2.0, (3, 3))
-        if plane:
-            matrix[2, :2] = matrix[:2, 2] = 0.0
         values[tensor.name] = matrix + matrix.T if tensor.is_symmetric else matrix
     for scalar in (*SCALARS, *SCALAR_UNKNOWNS, real("cwr"), real("w0")):
         values[scalar.name] = float(rng.uniform(0.3, 2.0))
@@ -90,7 +82,6 @@ class Maker:
     """Draws expressions; those called linear are linear in the unknowns."""
 
     rng: np.random.Generator
-    plane: bool
     drawn: set[str] = field(default_factory=set)
 
     def _pick(self, *makers: Any) -> Any:
@@ -111,13 +102,10 @@ class Maker:
             lambda: self.scalar(d) * self.vector(d),
             lambda: self.tensor(d) @ self.vector(d),
         ]
-        if self.plane:
-            makers.append(lambda: Perp(self.vector(d)))
-        else:
-            makers += [
-                lambda: Cross(self.vector(d), self.vector(d)),
-                lambda: Axial(self.tensor(d)),
-            ]
+        makers += [
+            lambda: Cross(self.vector(d), self.vector(d)),
+            lambda: Axial(self.tensor(d)),
+        ]
         return self._pick(*makers)
 
     def tensor(self, depth: int) -> Any:
@@ -131,8 +119,7 @@ class Maker:
             lambda: Outer(self.vector(d), self.vector(d)),
             lambda: Transpose(self.tensor(d)),
         ]
-        if not self.plane:
-            makers.append(lambda: Skew(self.vector(d)))
+        makers.append(lambda: Skew(self.vector(d)))
         return self._pick(*makers)
 
     def scalar(self, depth: int) -> Any:
@@ -154,8 +141,6 @@ class Maker:
                 lambda: sp.atan2(*SCALARS),
             ),
         ]
-        if self.plane:
-            makers.append(lambda: PlaneCross(self.vector(d), self.vector(d)))
         return self._pick(*makers)
 
     # ---- linear in the unknowns ----------------------------------------------------------
@@ -171,11 +156,10 @@ class Maker:
             lambda: self.linear_scalar(d) * self.vector(d),
             lambda: self.tensor(d) @ self.linear_vector(d),
         ]
-        if not self.plane:
-            makers += [
-                lambda: Cross(self.vector(d), self.linear_vector(d)),
-                lambda: Cross(self.linear_vector(d), self.vector(d)),
-            ]
+        makers += [
+            lambda: Cross(self.vector(d), self.linear_vector(d)),
+            lambda: Cross(self.linear_vector(d), self.vector(d)),
+        ]
         return self._pick(*makers)
 
     def linear_scalar(self, depth: int) -> Any:
@@ -189,9 +173,4 @@ class Maker:
             lambda: Dot(self.vector(d), self.linear_vector(d)),
             lambda: Dot(self.linear_vector(d), self.vector(d)),
         ]
-        if self.plane:
-            makers += [
-                lambda: PlaneCross(self.vector(d), self.linear_vector(d)),
-                lambda: PlaneCross(self.linear_vector(d), self.vector(d)),
-            ]
         return self._pick(*makers)

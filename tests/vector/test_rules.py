@@ -11,7 +11,6 @@ from pne_sym.vector import (
     Cross,
     Dot,
     Outer,
-    Perp,
     RuleI,
     RuleII,
     Skew,
@@ -22,8 +21,7 @@ from pne_sym.vector.rules import apply_rule_i, apply_rule_ii
 from tests.vector.expressions import random_values
 
 A, B, X = (VectorSymbol(name) for name in "abx")
-VALUES = random_values(np.random.default_rng(5), plane=False)
-FLAT = random_values(np.random.default_rng(5), plane=True)
+VALUES = random_values(np.random.default_rng(5))
 
 
 def test_rule_i() -> None:
@@ -38,7 +36,7 @@ def test_rule_i() -> None:
     assert np.allclose(evaluate(step.before, VALUES), evaluate(step.after, VALUES), rtol=1e-14)
 
 
-def test_rule_ii_in_space() -> None:
+def test_rule_ii() -> None:
     assert RuleII() == RULE_II
     assert RULE_II.coefficient(A) == Skew(A)
     coefficient, step = apply_rule_ii(A, X, sp.Integer(-2))
@@ -46,13 +44,6 @@ def test_rule_ii_in_space() -> None:
     assert np.allclose(evaluate(coefficient, VALUES) @ x, -2 * np.cross(a, x), rtol=1e-14)
     assert step.before == -2 * Cross(A, X)
     assert np.allclose(evaluate(step.before, VALUES), evaluate(step.after, VALUES), rtol=1e-14)
-
-
-def test_rule_ii_in_the_plane() -> None:
-    assert RULE_II.plane_coefficient(A) == Perp(A)
-    a, x = FLAT["a"], FLAT["x"]
-    expected = a[0] * x[1] - a[1] * x[0]
-    assert np.isclose(evaluate(RULE_II.plane_coefficient(A), FLAT) @ x, expected, rtol=1e-14)
 
 
 def test_statements_are_mathematics() -> None:

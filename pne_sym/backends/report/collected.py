@@ -54,7 +54,19 @@ def collect(derivation: Derivation) -> Collected:
             )
             if form is not None and (form.coefficients or parts):
                 known[equation.lhs] = result.forms[equation.name] = form
+    _of_the_platform(derivation, result)
     return result
+
+
+def _of_the_platform(derivation: Derivation, result: Collected) -> None:
+    """Forms of the platform's forces and moments; their parts stand in a later chapter."""
+    equations = [e for c in derivation.chapters if not c.leg_type for e in c.equations]
+    for equation in equations:
+        form = derivation.collected.get(equation.name)
+        if form is not None:
+            result.forms[equation.name] = form
+            parts = (e for e in equations if e.law is Law.RULES and e.expanded == equation.rhs)
+            result.origin.update({part.id: equation for part in parts})
 
 
 def _unknowns(derivation: Derivation, equations: list[Equation], leg_type: str) -> Iterator[Any]:

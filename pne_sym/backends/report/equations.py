@@ -138,18 +138,19 @@ class ChapterWriter:
 
     def _headline(self, equation: Equation, printer: LatexPrinter) -> str:
         origin = self.collected.origin.get(equation.id)
-        if origin is not None:
-            return self._part_headline(equation, origin, printer)
-        title = equation.title[:1].upper() + equation.title[1:]
-        reference = f", {equation.reference}" if equation.reference else ""
         quantity = self.derivation.notation[equation.name]
+        part = self._part_headline(equation, origin, printer) if origin is not None else ""
+        if part and quantity.leg_type:
+            return f"{_capital(part)}."
+        reference = f", {equation.reference}" if equation.reference else ""
         measure = f" [{unit(quantity.unit)}]" if quantity.unit not in ("-", "") else ""
-        return f"{title}{measure}. *{_capital(equation.law.value)}{reference}.*"
+        title = f"{_capital(equation.title)}{measure}" + (f": {part}" if part else "")
+        return f"{title}. *{_capital(equation.law.value)}{reference}.*"
 
     def _part_headline(self, equation: Equation, origin: Equation, printer: LatexPrinter) -> str:
         form = self.collected.forms.get(origin.name)
         part = part_of(equation, origin, form, printer)
-        return f"{_capital(part)} ([{origin.id}](#{origin.id}))."
+        return f"{part} ([{origin.id}](#{origin.id}))"
 
     def _steps(self, equation: Equation, printer: LatexPrinter) -> Table | None:
         if not equation.steps:
