@@ -92,6 +92,8 @@ def _row(argument: Argument, *, is_read: bool) -> str:
     value = name
     if _is_rotation(argument):
         value = f"_rotations({name}, {argument.value.shape[0]}, nearest)"
+    elif argument.default is Default.REST:
+        value = f"_motion_of_base({name})"
     elif argument.value.size == 0:
         value = f"np.zeros(0) if {name} is None else {name}"
     rule = "positive" if argument.positive else "" if is_read else "unused"
@@ -133,6 +135,7 @@ _NO_ROTATION = (
     "nearest rotation."
 )
 _FILL = {None: "None", Default.ZEROS: "0.0", Default.ONES: "1.0", Default.HOME_Q: "HOME_Q"}
+_FILL[Default.REST] = "_REST"
 _STATUS = "0 OK, 1 unreachable, 2 singular leg, 3 invalid, 4 not converged, as in C"
 
 

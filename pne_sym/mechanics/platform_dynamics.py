@@ -16,6 +16,7 @@ from pne_sym.mechanics.completion import LeftOut
 from pne_sym.mechanics.leg_dynamics import LegDynamics
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.linear_writer import LegMotion
+from pne_sym.mechanics.moving_base import carried_platform
 from pne_sym.mechanics.platform_motion import PlatformMotion
 from pne_sym.model.kinematics import TaskSpace
 from pne_sym.vector import (
@@ -186,6 +187,7 @@ class PlatformWriter:
                 body="platform",
                 reference="Eq. 33",
             )
+        self.from_base = carried_platform(book, p, self.mass, h, self.inertia)
         self._required()
 
     def _tensor_form_newton(self) -> tuple[Any, ...]:
@@ -199,7 +201,7 @@ class PlatformWriter:
         if self.n_newton is not None:
             force = book.define(
                 "R_t",
-                self.total(lambda leg: -leg.dynamics.force, self.n_newton),
+                self.total(lambda leg: -leg.dynamics.force, self.n_newton + self.from_base[0]),
                 r"\mathbf R_t",
                 "force that actuators and external wrench must give",
                 Law.ASSEMBLY,
@@ -214,7 +216,7 @@ class PlatformWriter:
                     lambda leg: (
                         -Cross(leg.g.platform_point, leg.dynamics.force) - leg.dynamics.moment
                     ),
-                    self.n_euler,
+                    self.n_euler + self.from_base[1],
                 ),
                 r"\mathbf R_\alpha",
                 "moment that actuators and external wrench must give",
@@ -321,7 +323,7 @@ class PlatformWriter:
             )
             zt = book.define(
                 "Z_t",
-                self.total(lambda leg: leg.dynamics.U, base),
+                self.total(lambda leg: leg.dynamics.U, base + self.from_base[0]),
                 r"\mathbf Z_t",
                 "translational part of Z",
                 Law.ASSEMBLY,
@@ -346,7 +348,7 @@ class PlatformWriter:
                         Cross(leg.g.platform_point, leg.dynamics.U)
                         - leg.dynamics.moment_form.remainder
                     ),
-                    base,
+                    base + self.from_base[1],
                 ),
                 r"\mathbf Z_\alpha",
                 "rotational part of Z",

@@ -3,7 +3,7 @@
 Structure is what contract-wise cannot change with a parameter's value: joint
 kinds and order, driven and extra marks, axes along coordinate directions,
 relations between neighbouring axes, zero offsets, massless links; which friction,
-springs and motors there are.
+springs, motors and limits of displacement there are.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pne_sym.model.effects import Actuator, Friction, Spring
 from pne_sym.model.manipulator import Joint, Leg, Manipulator, Vector3
 
 TOLERANCE = 1e-9
@@ -86,7 +87,8 @@ def structure_key(leg: Leg) -> tuple[object, ...]:
             joint.link.is_massless,
             _axis_key(joint.axis),
             tuple(component == 0.0 for component in joint.offset),
-            _effects_key(joint),
+            _present(joint.friction, joint.spring, joint.actuator),
+            joint.has_stroke,
         )
         for joint in leg.joints
     )
@@ -100,12 +102,12 @@ def structure_key(leg: Leg) -> tuple[object, ...]:
         tuple(component == 0.0 for component in end.offset),
         _axis_key(end.axis_link),
         _axis_key(end.axis_platform),
+        _present(end.friction),
     )
 
 
-def _effects_key(joint: Joint) -> tuple[object, ...]:
-    """Which parameters there are of friction, spring and motor; their values are live."""
-    effects = (joint.friction, joint.spring, joint.actuator)
+def _present(*effects: Friction | Spring | Actuator | None) -> tuple[object, ...]:
+    """Which parameters there are of friction, springs and motors; their values are live."""
     return tuple(
         effect and tuple(name for name, value in vars(effect).items() if value is not None)
         for effect in effects

@@ -70,7 +70,7 @@ def _read_leg(entry: Entry, types: _LegTypes, used: set[str], space: Space) -> L
     plane = is_plane(space)
     shared = _shared(table, types, used)
     frame = table.get("base_frame")
-    end = _platform_joint(table, shared, plane=plane)
+    end = _platform_joint(table, shared, space)
     return Leg(
         base_point=vector(table.require("base_point", "its position (m)"), plane=plane),
         base_frame=rotation(frame, plane=plane) if frame else IDENTITY3,
@@ -134,15 +134,20 @@ def _overridden(entries: list[Entry], own: Entry) -> list[Entry]:
     return result
 
 
-def _platform_joint(table: Table, shared: Table | None, *, plane: bool) -> PlatformJoint:
+def _platform_joint(table: Table, shared: Table | None, space: Space) -> PlatformJoint:
     own = table.get("platform_joint")
     common = shared.get("platform_joint") if shared else None
     if common and isinstance(common.value, str):
         common = replace(common, value={"kind": common.value})
     entry = own.over(common) if own else common
     if entry is None:
-        return PlatformJoint(PlatformJointKind.REVOLUTE if plane else PlatformJointKind.SPHERICAL)
-    return read_platform_joint(entry, plane=plane)
+        return PlatformJoint(
+            PlatformJointKind.REVOLUTE if is_plane(space) else PlatformJointKind.SPHERICAL
+        )
+    joint = read_platform_joint(entry, plane=is_plane(space))
+    if joint.friction and space is Space.POINT:
+        raise entry.fault("no friction: an output point does not turn")
+    return joint
 
 
 def _platform_point(table: Table, space: Space) -> tuple[float, float, float]:

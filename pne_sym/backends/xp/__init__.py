@@ -40,10 +40,16 @@ class XpBackend:
 def _public(function: PublicFunction) -> str:
     """A function that users call."""
     fill = {Default.ZEROS: "(0.0,) * {}", Default.ONES: "(1.0,) * {}", Default.HOME_Q: "HOME_Q"}
+    fill[Default.REST] = "_REST"
     body = ["arguments = {  # with shape and default"]
     for a in function.inputs:
         default = fill[a.default].format(a.value.size) if a.default else None
-        body.append(f'    "{a.name}": ({a.name}, {a.value.shape}, {default}),')
+        given = f"_motion_of_base({a.name})" if a.default is Default.REST else a.name
+        body.append(f'    "{a.name}": ({given}, {a.value.shape}, {default}),')
     p = "p" if function.needs_model else "None"
-    body += ["}", f"return _call(_steps_{function.name}, {p}, arguments)"]
+    unbounded = ", unbounded=True" * function.unbounded
+    body += [
+        "}",
+        f"return _call(_steps_{function.name}, {p}, arguments{unbounded})",
+    ]
     return definition(function, body, plain=True)

@@ -57,6 +57,8 @@ class Steps(StepText):
         "clear_at": "s.add_at({0}, -s.take({0}, {numbers}), {numbers})",
         "add_forces": "s.add_at({0}, {1}[:, None, ...] * {2}, {numbers})",
         "take_columns": "s.transposed(s.take(s.transposed({0}), {numbers}))",
+        "unlimited": "s.add_at({0}, s.filled(s.xp.inf, ({count},)), {numbers})",
+        "not_negative": "s.xp.astype(s.xp.all({0} >= 0.0, axis=0), s.dtype)",
         "inverse_root": "1.0 / s.nonzero(s.sqrt({0}))",
         "split": "{0}[:{n}, ...], {0}[{n}:, ...]",
         "join": "s.xp.concat(({0}, {1}))",
