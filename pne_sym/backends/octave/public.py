@@ -90,10 +90,7 @@ class Public(StepText):
         given = f"'{a.name}', {a.name}"
         if a.default is None:
             return f"{self.internal}argument({given}, {list(_core(a))}, n)"
-        known = {
-            Default.HOME_Q: self.home_q,
-            Default.REST: "[1; 0; 0; 0; 1; 0; 0; 0; 1; zeros(9, 1)]",
-        }
+        known = {Default.HOME_Q: self.home_q, Default.REST: "[reshape(eye(3), 9, 1); zeros(9, 1)]"}
         default = known.get(a.default, f"{a.default}({a.value.size}, 1)")
         return f"{self.internal}optional({given}, {default}, {str(a.positive).lower()}, n)"
 

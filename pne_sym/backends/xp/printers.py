@@ -64,8 +64,7 @@ class Steps(StepText):
         "join": "s.xp.concat(({0}, {1}))",
         "beside": "s.xp.concat(({0}, {1}), axis=1)",
         "dot": "s.xp.sum({0} * {1}, axis=0)",
-        "scale": "{0} * {1}[None, ...]",
-        "scale_columns": "{0} * {1}[None, ...]",
+        **dict.fromkeys(("scale", "scale_columns"), "{0} * {1}[None, ...]"),
         "half_form": "0.5 * s.xp.sum({0} * s.times({1}, {0}), axis=0)",
         "impossible": "s.filled(s.xp.nan, {numbers})",
         "saddle": "s.xp.concat((s.xp.concat(({0}, -{1}), axis=1), s.xp.concat((s.transposed({1}), "
