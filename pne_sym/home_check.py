@@ -21,7 +21,7 @@ from pne_sym.model.errors import SpecError, SpecWarning
 from pne_sym.model.kinematics import TASK_SPACES, displaced, pose_at
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.program.evaluate import Evaluation, Failure, Status, evaluate, prepare
-from pne_sym.program.interpret import Interpreter, PoseLayout
+from pne_sym.program.interpret import REST, Interpreter, PoseLayout
 from pne_sym.program.iteration import close_loops
 
 Array = NDArray[np.float64]
@@ -47,6 +47,7 @@ _FUNCTIONS = {  # of the program, by what is public of them
     "potential": "energy",
     "dissipation": "dissipation",
     "motors": "motor_rates",
+    "joint_margins": "joint_margins",
 }
 
 
@@ -93,7 +94,8 @@ class _Model:
         q, self.converged = close_loops(
             bundle.program, self.prepared, X, np.array(bundle.coordinates.home[1])
         )
-        self.vectors = {"X": X, "V": moving, "A": moving, "q": q}
+        base = np.tile(REST, (len(X), 1))
+        self.vectors = {"X": X, "V": moving, "A": moving, "base": base, "q": q}
         self.found = {
             name: evaluate(bundle.program, name, self.prepared, self.vectors)
             for name in _FUNCTIONS

@@ -19,6 +19,7 @@ from pne_sym.derivation import Derivation
 from pne_sym.mechanics.actuation import elsewhere
 from pne_sym.model.errors import SpecError
 from pne_sym.program.evaluate import evaluate, prepare
+from pne_sym.program.interpret import REST
 from pne_sym.program.iteration import close_loops
 
 Array = NDArray[np.float64]
@@ -68,7 +69,8 @@ def _samples(bundle: Bundle) -> list[tuple[Array, Array, tuple[int, ...], int]]:
     for home in homes:
         X = np.array([home.X])
         q, _ = close_loops(bundle.program, prepared, X, np.array(home.q))
-        vectors = {"X": X, "V": np.zeros((1, bundle.coordinates.sizes["NV"])), "q": q}
+        still = np.zeros((1, bundle.coordinates.sizes["NV"]))
+        vectors = {"X": X, "V": still, "base": REST[None], "q": q}
         arrays = evaluate(bundle.program, "dynamics", prepared, vectors).outputs
         drives = [arrays[name][0] for name in ("H", "Hk") if name in arrays]
         found.append((arrays["M"][0], np.hstack(drives), facts.passive, facts.rank))

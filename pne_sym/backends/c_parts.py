@@ -27,7 +27,6 @@ from pne_sym.backends.scalar import wrap
 from pne_sym.program.ir import Assignment, Block, Check, Function, LegInput
 from pne_sym.program.slices import columns, flat_places, is_full, slices, symbols
 
-_SIZES = {"X": "NQ", "V": "NV", "A": "NV", "q": "NJ"}
 _TROUBLES = ("unreachable", "singular")
 
 
@@ -88,7 +87,7 @@ class Parts:
         reads = self.slices.reads_before
         lines = []
         for vector in self.f.inputs:
-            size = self.bundle.coordinates.sizes[_SIZES[vector]]
+            size = self.bundle.coordinates.lengths[vector]
             lines += [
                 f"const real {vector}_{e} = {vector_name(vector)}[{e}*w + k];"
                 for e in range(size)

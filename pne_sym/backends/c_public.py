@@ -117,7 +117,7 @@ def _function(
 
 
 def _input(a: Argument) -> CArray:
-    optional = a.default in (Default.ZEROS, Default.HOME_Q) or not a.value.size
+    optional = a.default not in (None, Default.ONES) or not a.value.size
     return CArray(a.name, a.value.size, _shape(a), optional=optional, positive=a.positive)
 
 

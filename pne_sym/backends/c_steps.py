@@ -16,6 +16,8 @@ from pne_sym.program import interpret
 from pne_sym.program.public import Apply, Default, PublicFunction, Run, Search, Step, Value
 
 _COPY = "{a}[i]"
+_CHANGED = ("divide_rows", "add_at", "clear_at", "add_forces", "wrap_turns", "unlimited")
+"""Operations that change some entries of a copy."""
 _ENTRIES = {
     "add": "{a}[i] + {b}[i]",
     "subtract": "{a}[i] - {b}[i]",
@@ -27,7 +29,7 @@ _ENTRIES = {
     "choose_length": "{b}[i] > 0 ? {b}[i] : {a}[i] > TINY*{a}[{w} + i] ? {a}[i] : {a}[{w} + i]",
     "extend": "i < {all_a} ? {a}[i] : 0",
     "impossible": "R(NAN)",
-    **dict.fromkeys(("divide_rows", "add_at", "clear_at", "add_forces", "wrap_turns"), _COPY),
+    **dict.fromkeys(_CHANGED, _COPY),
 }
 """Operations whose result is first, or altogether, an expression for every entry i."""
 _LANES = {
@@ -37,6 +39,8 @@ _LANES = {
     "clear_at": "clear_at({count}, {row}, {places}, {x});",
     "add_forces": "add_forces({count}, {n}, {w}, {places}, {b}, {c}, {x});",
     "wrap_turns": "wrap_turns({count}, {row}, {places}, {x});",
+    "unlimited": "unlimited({count}, {size}, {w}, {places}, {x}, why.overflow);",
+    "not_negative": "not_negative({m}, {w}, {a}, {x}, why.overflow);",
     "take": "take({count}, {row}, {places}, {a}, {x});",
     "take_columns": "take_columns({m}, {n}, {count}, {w}, {places}, {a}, {x});",
     "times": "product({m}, {n}, 1, {w}, {a}, {b}, {x});",
@@ -133,7 +137,7 @@ class Steps:
         for step in self.f.steps:
             lines += self._step(step)
         outputs = [o for o in self.f.outputs if o.value.size]
-        for o in outputs:
+        for o in outputs if not self.f.unbounded else []:
             lines.append(f"check({o.value.size}, {self.w}, {self.at[o.name]}, why.overflow);")
         lines.append(f"judge(&why, {self.w}, code);")
         for o in outputs:
@@ -183,7 +187,11 @@ class Steps:
                 lines.append(f"require_positive({given}, why.invalid);")
             if a.default or self.lanes:
                 self.buffers.append(self._buffer(f"{a.name}_in", a.value.size))
-            if a.default:
+            if a.default is Default.REST:
+                lines.append(
+                    f"{a.name} = motion_of_base({self.w}, {a.name}, {a.name}_in, why.invalid);"
+                )
+            elif a.default:
                 fill = _FILL[a.default]
                 lines.append(f"{a.name} = optional({given}, {fill}, {a.name}_in, why.invalid);")
             elif self.lanes:

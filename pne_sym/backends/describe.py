@@ -55,6 +55,7 @@ class Described:
         has_quaternion, is_constrained, is_redundant: features.
         legs: number of legs.
         is_numeric: some displacements are found by iteration; functions take q0.
+        moves_base: the base moves; functions take its motion.
     """
 
     name: str
@@ -69,6 +70,7 @@ class Described:
     legs: int
 
     is_numeric: bool
+    moves_base: bool
 
     @property
     def actuated(self) -> tuple[int, ...]:
@@ -151,6 +153,7 @@ def describe(bundle: Bundle) -> Described:
         ", ".join(c.wrench),
         len(bundle.manipulator.legs),
         not all(t.is_closed for t in bundle.derivation.leg_types),
+        bundle.manipulator.moving_base,
     )
 
 

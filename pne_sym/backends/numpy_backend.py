@@ -6,6 +6,8 @@ import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.describe import Described, describe
 from pne_sym.backends.numpy_functions import FunctionText, Places
@@ -167,11 +169,5 @@ def _parameters_read(bundle: Bundle) -> list[str]:
 
 def _subscript(shape: tuple[int, ...], index: int, *, per_leg: bool) -> str:
     """Subscript of one entry of a parameter array."""
-    where = []
-    if per_leg:
-        where.append(":")
-    if shape == (3,):
-        where.append(str(index))
-    elif shape == (3, 3):
-        where += [str(index // 3), str(index % 3)]
-    return f"[{', '.join(where)}]" if where and where != [":"] else ""
+    where = [":"] * per_leg + [str(k) for k in np.unravel_index(index, shape)] * bool(shape)
+    return f"[{', '.join(where)}]" if shape else ""

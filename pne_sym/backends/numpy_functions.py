@@ -13,7 +13,6 @@ from typing import Any
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.python_text import WIDTH, PythonText
 from pne_sym.backends.scalar import wrap
-from pne_sym.backends.straight import SIZES
 from pne_sym.program.count import count_function
 from pne_sym.program.ir import Block, Check, Function
 from pne_sym.program.slices import columns, flat_places, slices
@@ -103,7 +102,7 @@ class FunctionText:
             lines.append(f'shared, legs = m.constants("{self.f.name}")')
         lines += self.outside.names(self._shared(), "shared")
         for vector in self.f.inputs:
-            size = self.bundle.coordinates.sizes[SIZES[vector]]
+            size = self.bundle.coordinates.lengths[vector]
             lines += [
                 f"{vector}_{k} = {vector}[{k}]"
                 for k in range(size)

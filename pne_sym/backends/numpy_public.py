@@ -36,6 +36,8 @@ _EXPRESSIONS = {
     "split": "{0}[:{n}], {0}[{n}:]",
     "add_forces": "_with_forces({0}, {1}, {2}, {numbers})",
     "wrap_turns": "_wrapped({0}, {numbers})",
+    "unlimited": "_unlimited({0}, {numbers})",
+    "not_negative": "_not_negative({0})",
     "divide_rows": "_rows_divided({0}, {1}, {numbers})",
     "choose_length": "_chosen_length({0}, {1})",
     "solve": "_solve({0}, {1})",
@@ -118,4 +120,5 @@ def public_text(program: Program, function: PublicFunction) -> str:
     call = ["return _call(", f'    "{function.name}", _steps_{function.name}, {p},']
     call += [f"    {row}" for row in rows(program, function)]
     call += ["    mode=_Judged,"] * function.gives_status
+    call += ["    unbounded=True,"] * function.unbounded
     return definition(function, [*call, ")"])

@@ -86,10 +86,16 @@ def _is_rotation(argument: Argument) -> bool:
     return len(argument.value.shape) == 2
 
 
+def taken(argument: Argument) -> str:
+    """An argument as an array, where users may give it otherwise."""
+    is_base = argument.default is Default.REST
+    return f"_motion_of_base({argument.name})" if is_base else argument.name
+
+
 def _row(argument: Argument, *, is_read: bool) -> str:
     name, shape = argument.name, ", ".join(argument.dimensions)
     shape += "," * (len(argument.dimensions) == 1)
-    value = name
+    value = taken(argument)
     if _is_rotation(argument):
         value = f"_rotations({name}, {argument.value.shape[0]}, nearest)"
     elif argument.value.size == 0:
@@ -97,7 +103,7 @@ def _row(argument: Argument, *, is_read: bool) -> str:
     rule = "positive" if argument.positive else "" if is_read else "unused"
     parts = [f'"{name}"', value, f"({shape})"]
     if argument.default or rule:
-        parts.append(_FILL[argument.default])
+        parts.append(FILL[argument.default])
     if rule:
         parts.append(f'"{rule}"')
     return f"({', '.join(parts)})"
@@ -132,7 +138,13 @@ _NO_ROTATION = (
     f"ValueError: R has not orthonormal rows, to {ORTHONORMAL:g}, and determinant +1, or no single "
     "nearest rotation."
 )
-_FILL = {None: "None", Default.ZEROS: "0.0", Default.ONES: "1.0", Default.HOME_Q: "HOME_Q"}
+FILL = {
+    None: "None",
+    Default.ZEROS: "0.0",
+    Default.ONES: "1.0",
+    Default.HOME_Q: "HOME_Q",
+    Default.REST: "_REST",
+}
 _STATUS = "0 OK, 1 unreachable, 2 singular leg, 3 invalid, 4 not converged, as in C"
 
 

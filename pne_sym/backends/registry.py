@@ -29,8 +29,8 @@ _C = Syntax(
 _MATLAB = Syntax(
     comments=("%",),
     function=r"function (?:[^=(]*= )?(\w+)\(",
-    ends=r"(?:flat_|array_|model\.)|\w+ = (?:sum\(\(|[XVAq]\()|(?:singular|invalid|unreachable) ="
-    r"|(?:status|end)\b",
+    ends=r"(?:flat_|array_|model\.)|\w+ = (?:sum\(\(|(?:[XVAq]|base)\()"
+    r"|(?:singular|invalid|unreachable) =|(?:status|end)\b",
 )
 
 TARGETS: tuple[Target, ...] = (

@@ -19,8 +19,8 @@ class StepText:
 
     Attributes:
         expressions: operations that are more than a call, by name: {0}, {1} ... are the operands,
-            {n} and {numbers} what is fixed, {targets} the results, {rest} by how many entries the
-            first of them has more than the first operand.
+            {n} and {numbers} what is fixed, {count} how many numbers, {targets} the results, {rest}
+            by how many entries the first of them has more than the first operand.
         call: all others, of {name} and {operands}; what is fixed comes last.
         apply: {targets} get the {value}.
         several: more than one of them.
@@ -82,7 +82,7 @@ class StepText:
         lines = [self.apply.format(targets=targets, value=self._applied(step))]
         code = int(OPERATIONS[step.operation].status)
         made = (self.made.format(target=target.name, code=code) for target in step.targets)
-        return lines + [line for line in made if line]
+        return lines + [line for line in made if line and code]
 
     def _applied(self, step: Apply) -> str:
         """An operation at its operands."""
@@ -96,6 +96,7 @@ class StepText:
             operands=", ".join([*operands, *([numbers] if "numbers" in takes else [])]),
             numbers=numbers,
             n=(*step.numbers, 0)[0],
+            count=len(step.numbers),
             targets=", ".join(target.name for target in step.targets),
             rest=first.size - (step.operands[0].size if step.operands else 0),
         )
@@ -112,6 +113,7 @@ def described(name: str, argument: Argument, shape: str, home: str = "HOME_Q") -
     """
     meaning = f"{name}: {argument.meaning}"
     if argument.default and "by default" not in meaning:
-        default = {Default.ZEROS: "zero", Default.ONES: "one"}.get(argument.default, home)
+        words = {Default.ZEROS: "zero", Default.ONES: "one", Default.REST: "at rest"}
+        default = words.get(argument.default, home)
         meaning += f", by default {default}"
     return f"{meaning} ({shape})."

@@ -19,9 +19,6 @@ from pne_sym.derivation import ParameterField
 from pne_sym.program.ir import Assignment, Block, Check, Function
 from pne_sym.program.slices import places_of, slices, symbols
 
-SIZES = {"X": "NQ", "V": "NV", "A": "NV", "q": "NJ"}
-"""Sizes of the input vectors of functions, by name."""
-
 
 def places(numbers: Iterable[int], first: int = 0) -> str:
     """Places in an array, of a language that counts from the first."""
@@ -145,7 +142,7 @@ class StraightText:
         own = (n for names in (function.shared, *function.per_leg.values()) for n in names)
         values = [(n, self.forms.prepared.format(name=self.named(n))) for n in own if n in read]
         for vector in function.inputs:
-            for k in range(self.bundle.coordinates.sizes[SIZES[vector]]):
+            for k in range(self.bundle.coordinates.lengths[vector]):
                 entry = self.forms.entry.format(vector=vector, k=k + self.forms.first)
                 values += [(name, entry)] if (name := f"{vector}_{k}") in parts.entries else []
         given = (self.assign(self.named(name), value) for name, value in values)

@@ -22,7 +22,7 @@ from pne_sym.vector.dimensions import (
 
 _of_unit = lru_cache(maxsize=None)(dimension_of_unit)
 _TURNING = {_of_unit(unit): unit for unit in ("rad/s", "rad/s^2")}
-_OF_MOTION = (Law.RATE, Law.RECIPROCITY, Law.RULES, Law.ROTOR)
+_OF_MOTION = (Law.RATE, Law.RECIPROCITY, Law.RULES, Law.ROTOR, Law.MOVING_FRAME)
 OF_ZERO = ""
 """Unit of what is zero: it has every dimension."""
 

@@ -45,6 +45,8 @@ class Law(enum.StrEnum):
     FRICTION = "friction"
     SPRING = "spring"
     ROTOR = "rotor"
+    LIMIT = "limit"
+    MOVING_FRAME = "moving frame"
     ENERGY = "energy"
     LUMPING = "lumped parameter"
 
@@ -59,6 +61,10 @@ class Role(enum.StrEnum):
     ANGULAR_VELOCITY = "angular velocity of the platform"
     ANGULAR_ACCELERATION = "angular acceleration of the platform"
     GRAVITY = "acceleration of gravity"
+    BASE_ROTATION = "rotation from base axes to world axes"
+    BASE_ANGULAR_VELOCITY = "angular velocity of the base"
+    BASE_ANGULAR_ACCELERATION = "angular acceleration of the base"
+    BASE_ACCELERATION = "acceleration of the base origin, without gravity"
     POINT = "from the leg's base point to its connection point"
     POINT_VELOCITY = "velocity of the connection point"
     POINT_ACCELERATION = "acceleration of the connection point"
@@ -330,6 +336,8 @@ class Coordinates:
         actuation: what actuators and constraints determine, by generic rank.
         transmits_moments: some leg transmits a moment: leg reactions have six entries.
         names: of every entry of q, the leg's and the joint's: leg2_joint3 where they have none.
+        limited: (leg, joint) of the entries of q that have limits.
+        overconstrained: how many constraints follow from the others.
     """
 
     space: str
@@ -348,6 +356,14 @@ class Coordinates:
     transmits_moments: bool = False
     constraint_units: tuple[str, ...] = ()
     names: tuple[str, ...] = ()
+    limited: tuple[tuple[int, int], ...] = ()
+    overconstrained: int = 0
+
+    @property
+    def lengths(self) -> dict[str, int]:
+        """Numbers of entries of what functions of a program take."""
+        n = self.sizes
+        return {"X": n["NQ"], "V": n["NV"], "A": n["NV"], "base": 18, "q": n["NJ"]}
 
     @property
     def position(self) -> int:
@@ -371,7 +387,7 @@ class Coordinates:
 
     @property
     def sizes(self) -> dict[str, int]:
-        """NQ, NV, NU, NC, NW, NJ: sizes of X, V, tau, lambda, wrench, q."""
+        """NQ, NV, NU, NC, NW, NJ: sizes of X, V, tau, lambda, wrench, q; dependent constraints."""
         extra = len(self.extras)
         return {
             "NQ": len(self.pose) + extra,
@@ -380,6 +396,7 @@ class Coordinates:
             "NC": len(self.constraints),
             "NW": len(self.wrench),
             "NJ": len(self.joints),
+            "OVERCONSTRAINED": self.overconstrained,
         }
 
 

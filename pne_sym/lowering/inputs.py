@@ -22,6 +22,7 @@ def unpack(derivation: Derivation) -> dict[str, tuple[list[Assignment], list[Che
     pose, checks = _pose(derivation)
     return {
         "X": (pose, checks),
+        "base": _base(derivation),
         "V": (_twist(derivation, "V", Role.VELOCITY, Role.ANGULAR_VELOCITY), []),
         "A": (_twist(derivation, "A", Role.ACCELERATION, Role.ANGULAR_ACCELERATION), []),
     }
@@ -47,6 +48,39 @@ def _twist(derivation: Derivation, vector: str, linear: Role, angular: Role) -> 
         Assignment(six[c], entry(vector, k), vector)
         for k, c in enumerate(derivation.coordinates.components)
     ]
+
+
+_BASE = (
+    (Role.BASE_ROTATION, 9),
+    (Role.BASE_ANGULAR_VELOCITY, 3),
+    (Role.BASE_ANGULAR_ACCELERATION, 3),
+    (Role.BASE_ACCELERATION, 3),
+)
+"""What stands in the motion of the base, R row by row."""
+
+
+def _base(derivation: Derivation) -> tuple[list[Assignment], list[Check]]:
+    """Motion of the base; its rotation must be one."""
+    made: list[Assignment] = []
+    first = 0
+    for role, size in _BASE:
+        for k, component in enumerate(_components(derivation, role)[:size]):
+            if not component.is_Number:
+                made.append(Assignment(component, entry("base", first + k), "base"))
+        first += size
+    rotation = _components(derivation, Role.BASE_ROTATION)
+    if len(rotation) == 3:  # the base is at rest
+        return [], []
+    rows = sp.Matrix(3, 3, rotation)
+    off = (rows * rows.T - sp.eye(3)).applyfunc(lambda e: e**2)
+    miss, turn = _symbol("base_miss"), _symbol("base_turn")
+    made.append(Assignment(miss, _NEAR**2 - sum(off), "base"))
+    made.append(Assignment(turn, rows.row(0).cross(rows.row(1)).dot(rows.row(2)), "base"))
+    return made, [Check("invalid", s, sp.S.One, 1, "base") for s in (miss, turn)]
+
+
+_NEAR = 1e-5
+"""By how much the products of the base's axes may differ from those of unit vectors."""
 
 
 def _pose(derivation: Derivation) -> tuple[list[Assignment], list[Check]]:

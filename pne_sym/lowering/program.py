@@ -17,6 +17,7 @@ from pne_sym.lowering.margins import Margins
 from pne_sym.lowering.public import public_functions
 from pne_sym.lowering.simplify import inline_single_use, numbered, renamed
 from pne_sym.program.ir import (
+    VECTORS,
     Assignment,
     Block,
     Check,
@@ -52,6 +53,7 @@ GROUPS: tuple[tuple[tuple[str, tuple[str, ...]], ...], ...] = (
     (("potential", ("potential",)),),
     (("dissipation", ("dissipation",)),),
     (("motors", ("motor_rates", "per_turn")),),
+    (("joint_margins", ("margins",)),),
     (("condition", ("lengths",)),),
 )
 
@@ -331,7 +333,10 @@ def _function(
     assert derivation.coordinates is not None
     inputs, assignments, checks = [], [], []
     for vector, (named, conditions) in unpack(derivation).items():
-        chain = _closure_of(named, {a.target for a in named if a.target in sliced.used})
+        wanted = {a.target for a in named if a.target in sliced.used}
+        if wanted and vector == "base":  # what must hold of a rotation, whatever is used of it
+            wanted |= {c.value for c in conditions}
+        chain = _closure_of(named, wanted)
         own = [a for a in named if a.target in chain]
         if own:
             inputs.append(vector)
@@ -352,7 +357,7 @@ def _function(
     constants = {names.get(s, s).name: builder.stage_of(s).leg_type for s in sliced.constants}
     return Function(
         sliced.part.name,
-        tuple(v for v in "XVAq" if v in inputs),
+        tuple(v for v in VECTORS if v in inputs),
         sliced.part.arrays,
         tuple(assignments),
         tuple(checks),
@@ -407,6 +412,7 @@ def _shapes(derivation: Derivation) -> dict[str, tuple[int, ...]]:
         "potential": (1,),
         **({"dissipation": (1,)} if _is_made(derivation, "dissipation") else {}),
         **{name: (n["NU"],) for name in ("motor_rates", "per_turn") if _is_made(derivation, name)},
+        **({"margins": (n["NJ"],)} if _is_made(derivation, "margins") else {}),
         "constraints": (n["NC"],),
         "constraint_bias": (n["NC"],),
         "lengths": (2,),

@@ -21,6 +21,7 @@ from pne_sym.program.public import (
     Argument,
     Default,
     PublicFunction,
+    Run,
     Search,
     Value,
     verify_steps,
@@ -30,6 +31,7 @@ from pne_sym.program.public import (
 _SIZES = {
     "X": "NQ", "X0": "NQ", "V": "NV", "A": "NV", "tau": "NU", "q": "NJ", "q0": "NJ",
     "q_actuated": "NU", "wrench": "NW", "weights": "NU", "Z": "NV", "length": "",
+    "base": "18",
 }  # fmt: skip
 _MEANINGS = {
     "X": "pose, and extra coordinates",
@@ -42,6 +44,8 @@ _MEANINGS = {
     "weights": "positive weights of the actuator forces: least sum of weights tau^2",
     "length": "by which rows of moments are divided [m]; by default the rms distance of the "
     "platform points from their centroid, or where they coincide the rms size of the legs",
+    "base": "motion of the base (R, omega, alpha, a): rotation world_R_base; in base axes its "
+    "angular velocity and acceleration, and the acceleration of its origin, without gravity",
     "q0": "first guess of the displacements",
 }
 _DEFAULTS = {
@@ -49,6 +53,7 @@ _DEFAULTS = {
     "wrench": Default.ZEROS,
     "weights": Default.ONES,
     "q0": Default.HOME_Q,
+    "base": Default.REST,
 }
 
 
@@ -87,6 +92,7 @@ class Writer:
         self.guessed = guessed
         self.constrained = self.n["NC"] > 0
         self.every = tuple(range(self.n["NV"]))
+        self.independent = self.n["NC"] - coordinates.overconstrained
 
     # ---- arguments ---------------------------------------------------------------------------
 
@@ -94,7 +100,7 @@ class Writer:
         """An input."""
         key = _SIZES[name]
         keys = (key,) if key else ()
-        value = Value(name, tuple(self.n[k] for k in keys))
+        value = Value(name, tuple(self.n.get(k) or int(k) for k in keys))
         positive = name in ("weights", "length")
         return Argument(value, keys, _MEANINGS[name], _DEFAULTS.get(name), positive)
 
@@ -112,8 +118,10 @@ class Writer:
         group: str = "dynamics",
         **more: object,
     ) -> PublicFunction:
-        """A function of the model; q0 comes last where displacements are iterated."""
-        names = [*inputs.split(), *(["q0"] if self.guessed else [])]
+        """A function of the model; last come base, where it matters, and q0 for iterations."""
+        runs = [self.program.functions[s.function] for s in algorithm.steps if isinstance(s, Run)]
+        names = [*inputs.split(), *["base"] * any("base" in f.inputs for f in runs)]
+        names += ["q0"] * self.guessed
         arguments = tuple(self.given(n) for n in names)
         steps = tuple(algorithm.steps)
         return PublicFunction(name, meaning, arguments, outputs, steps, group, **more)  # type: ignore[arg-type]
@@ -196,7 +204,7 @@ class Writer:
         elif facts.solved != self.every:
             H, f = (a.apply("take", v, numbers=facts.solved) for v in (H, f))
             Hk = a.apply("take", Hk, numbers=facts.solved) if Hk else None
-        square = self.n["NU"] + self.n["NC"] == H.shape[0]
+        square = self.n["NU"] + self.n["NC"] == H.shape[0] and not self.c.overconstrained
         if square:
             if Hk is None:
                 return (a.apply("solve", H, f),)
@@ -204,13 +212,14 @@ class Writer:
             return a.apply_all("split", both, numbers=[self.n["NU"]])
         left = across = None
         if Hk is not None:
-            left, across = a.apply_all("resolve", Hk, numbers=[self.n["NC"]])
+            left, across = a.apply_all("resolve", Hk, numbers=[self.independent])
         tau = self._least(a, H, f, across, weighted=weighted)
         if Hk is None or left is None:
             return (tau,)
         rest = a.apply("subtract", f, a.apply("times", H, tau))
         system = a.apply("product", left, Hk)
-        return tau, a.apply("solve", system, a.apply("times", left, rest))
+        how = "least_norm" if self.c.overconstrained else "solve"
+        return tau, a.apply(how, system, a.apply("times", left, rest))
 
     def _least(
         self, a: Algorithm, H: Value, f: Value, across: Value | None, *, weighted: bool
@@ -255,7 +264,29 @@ class Writer:
 
     def _force_outputs(self, tau: Value, *rest: Value) -> list[Argument]:
         found = [self.made(tau, "tau", "actuator forces [N or N m]", "NU")]
-        return found + [self.made(v, "lambda", "constraint forces [N or N m]", "NC") for v in rest]
+        return found + [self._multipliers(v) for v in rest]
+
+    def _multipliers(self, value: Value) -> Argument:
+        """The output lambda."""
+        meaning = "constraint forces [N or N m]"
+        if self.c.overconstrained:
+            meaning += (
+                f", of least norm: {self.c.overconstrained} of the constraints follow from others"
+            )
+        return self.made(value, "lambda", meaning, "NC")
+
+    def _least_held(
+        self, a: Algorithm, M: Value, force: Value, Hk: Value, bias: Value
+    ) -> tuple[Value, Value]:
+        """Acceleration under constraints of which some follow from others, and the least lambda."""
+        some, _ = a.apply_all("resolve", a.apply("transposed", Hk), numbers=[self.independent])
+        own = a.apply("transposed", a.apply("product", some, a.apply("transposed", Hk)))
+        right = a.apply("join", force, a.apply("negative", a.apply("times", some, bias)))
+        both = a.apply("solve", a.apply("saddle", M, own), right)
+        A, amounts = a.apply_all("split", both, numbers=[self.n["NV"]])
+        left, _ = a.apply_all("resolve", Hk, numbers=[self.independent])
+        wanted = a.apply("times", left, a.apply("times", own, amounts))
+        return A, a.apply("least_norm", a.apply("product", left, Hk), wanted)
 
     def _forward_dynamics(self) -> PublicFunction:
         a = Algorithm()
@@ -263,12 +294,15 @@ class Writer:
         M, Z, H, *constraint = a.run("dynamics", self.program, *names)
         force = a.apply("times", H, self.given("tau").value)
         force = a.apply("subtract", a.apply("add", force, self._external(a)), Z)
-        if constraint:
+        if constraint and self.c.overconstrained:
+            A, lam = self._least_held(a, M, force, *constraint)
+            outputs = [self._multipliers(lam)]
+        elif constraint:
             Hk, bias = constraint
             right = a.apply("join", force, a.apply("negative", bias))
             both = a.apply("solve", a.apply("saddle", M, Hk), right)
             A, lam = a.apply_all("split", both, numbers=[self.n["NV"]])
-            outputs = [self.made(lam, "lambda", "constraint forces [N or N m]", "NC")]
+            outputs = [self._multipliers(lam)]
         else:
             A, outputs = a.apply("solve", M, force), []
         return self.function(

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 def actuator_functions(w: Writer) -> list[PublicFunction]:
     """Where actuators stand, what they do, what friction takes."""
-    found = [_dissipation(w), _momentum(w)]
+    found = [_dissipation(w), _momentum(w), *_limits(w)]
     if not w.n["NU"]:
         return found
     found += [_of_joints(w, *row) for row in _ROWS] + [_power(w)]
@@ -67,6 +67,41 @@ def _dissipation(w: Writer) -> PublicFunction:
     )
     meaning = "Power that friction takes, not negative; the rate of energy is power less this."
     return w.function("dissipation", meaning, "X V", a, out, group="actuators")
+
+
+def _limits(w: Writer) -> list[PublicFunction]:
+    """Margins of the joints, and whether all of them are kept; what has no limits is infinite."""
+    limited = "joint_margins" in w.program.functions
+    function, array = ("joint_margins", "margins") if limited else ("inverse_kinematics", "q")
+    margins, within = Algorithm(), Algorithm()
+    free = [k for k, j in enumerate(w.c.joints) if j not in w.c.limited]
+    (distances,) = margins.run(function, w.program, array)
+    made = margins.apply("unlimited", distances, numbers=free) if free else distances
+    (distances,) = within.run(function, w.program, array)
+    if not limited:
+        distances = within.apply("subtract", distances, distances)
+    holds = within.apply("not_negative", distances)
+    counted = {"group": "kinematics", "counted": function}
+    return [
+        w.function(
+            "joint_margins",
+            "How far the joints are from the nearer limit of displacement, negative beyond it; "
+            "infinite where there is none.",
+            "X",
+            margins,
+            w.made(made, "margins", "distances, in the order of q [m or rad]", "NJ"),
+            unbounded=bool(free),
+            **counted,
+        ),
+        w.function(
+            "within_limits",
+            "Whether all joints are within their limits of displacement.",
+            "X",
+            within,
+            w.made(holds, "within", "1 where no margin is negative, else 0; NaN is neither"),
+            **counted,
+        ),
+    ]
 
 
 def _momentum(w: Writer) -> PublicFunction:

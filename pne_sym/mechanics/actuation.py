@@ -18,8 +18,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pne_sym.derivation import Actuation
-from pne_sym.mechanics.mobility import DEPENDENT, mobility, motions_at_home
+from pne_sym.mechanics.mobility import DEPENDENT, Mobility, mobility, motions_at_home
 from pne_sym.model.closure import leg_gap, unreachable
+from pne_sym.model.errors import SpecError
 from pne_sym.model.kinematics import TASK_SPACES, Array, displaced, pose_at, rotation_about
 from pne_sym.model.loops import Loops, all_closed
 from pne_sym.model.manipulator import Home, Joint, Leg, Manipulator, Matrix3, Space, Vector3
@@ -49,8 +50,7 @@ class _Ranks:
 def actuation(manipulator: Manipulator) -> Actuation:
     """What the actuators of a manipulator determine, for almost all parameters and poses.
 
-    The random numbers are always the same ones.  Legs must be regular at home, and constraints
-    independent there.
+    The random numbers are always the same ones.  Legs must be regular at home.
 
     >>> from pne_sym import manipulators
     >>> found = actuation(manipulators.load("stewart_sps"))
@@ -129,23 +129,24 @@ def _rank(rows: Array) -> int:
 
 def _samples(m: Manipulator) -> Iterator[Manipulator]:
     """Geometries and poses of the same structure, each as a manipulator whose home it is."""
-    rng, constraints = np.random.default_rng(0), mobility(m).constraints
+    rng, home = np.random.default_rng(0), mobility(m)
     yield m
     for points, frames in ((False, False), (True, False), (False, True), (True, True)):
         geometry = _changed(m, rng, points=points, frames=frames) if points or frames else m
         start = _closed(geometry, np.array(m.home.X), np.array(m.home.q))
-        if start is None or not _is_alike(start, constraints):
+        if start is None or not _is_alike(start, home):
             continue
         for _ in range(_POSES):
             found = elsewhere(start, rng)
-            if found is not None and _is_alike(found, constraints):
+            if found is not None and _is_alike(found, home):
                 yield found
 
 
-def _is_alike(sample: Manipulator, constraints: int) -> bool:
+def _is_alike(sample: Manipulator, home: Mobility) -> bool:
     """Whether legs are regular, and constraints as many and as independent as at home."""
     found = mobility(sample)
-    return (found.constraints, found.overconstrained, found.singular_legs) == (constraints, 0, ())
+    dependent = found.overconstrained == home.overconstrained
+    return dependent and (found.constraints, found.singular_legs) == (home.constraints, ())
 
 
 def _size(m: Manipulator) -> float:
@@ -183,6 +184,41 @@ def elsewhere(m: Manipulator, rng: np.random.Generator) -> Manipulator | None:
             return found
         step /= 2.0
     return None
+
+
+def check_dependence(m: Manipulator) -> None:
+    """Refuse mechanisms with dependent constraints that move at home only.
+
+    Raises:
+        SpecError: random motions along the freedoms at home end where loops do not close, or where
+            there are fewer freedoms.
+    """
+    home, rng = mobility(m), np.random.default_rng(1)
+    if not home.overconstrained:
+        return
+    for _ in range(_POSES):
+        found = elsewhere(m, rng)
+        moved = found is not None and _way(m, found) > _LEAST
+        if not moved or found is None or mobility(found).freedoms != home.freedoms:
+            raise SpecError(
+                m.name,
+                "legs",
+                f"overconstrained: of the {home.constraints} constraints that the legs put on the "
+                f"platform, {home.overconstrained} follow from the others at home, but not beyond "
+                "it: what moves there moves at home only",
+                "legs whose constraints are independent, or dependent wherever the platform is",
+            )
+
+
+_LEAST = 0.05
+"""A part of `_SHIFT` or `_TURN` that counts as a motion."""
+
+
+def _way(m: Manipulator, moved: Manipulator) -> float:
+    """How far joints have moved, as parts of `_SHIFT` and `_TURN`."""
+    joints = [joint for leg in m.legs for joint in leg.joints]
+    sizes = np.array([_TURN if joint.kind.is_angle else _SHIFT * _size(m) for joint in joints])
+    return float(np.max(np.abs(np.subtract(moved.home.q, m.home.q)) / sizes))
 
 
 def _changed(

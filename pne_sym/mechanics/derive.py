@@ -18,17 +18,19 @@ from pne_sym.derivation import (
     Role,
 )
 from pne_sym.derivation.frames import BodyFrame, turned_about
-from pne_sym.mechanics.actuation import actuation
+from pne_sym.mechanics.actuation import actuation, check_dependence
 from pne_sym.mechanics.branches import branch_signs
 from pne_sym.mechanics.completion import completion_of
 from pne_sym.mechanics.conditioning import write_lengths
 from pne_sym.mechanics.constraints import axis_across, force_vanishes
 from pne_sym.mechanics.inverse_kinematics import InverseKinematics, given_displacements, invert
 from pne_sym.mechanics.joint_forces import write_joint_forces
+from pne_sym.mechanics.joint_limits import write_margins
 from pne_sym.mechanics.leg_dynamics import DynamicsWriter, introduce_bodies
 from pne_sym.mechanics.leg_geometry import LegGeometry, build_geometry
 from pne_sym.mechanics.leg_motion import MotionWriter
-from pne_sym.mechanics.mobility import check_solvable
+from pne_sym.mechanics.mobility import check_solvable, mobility
+from pne_sym.mechanics.moving_base import introduce_base
 from pne_sym.mechanics.notation import with_symbols
 from pne_sym.mechanics.orientation import orientation_rows, orientation_signs
 from pne_sym.mechanics.platform_dynamics import Leg, PlatformWriter
@@ -53,11 +55,15 @@ def derive(manipulator: Manipulator) -> Derivation:
     book = Book()
     space = TASK_SPACES[manipulator.space]
     platform = introduce_platform(book, manipulator, space)
+    if manipulator.moving_base:
+        base = introduce_base(book, platform.gravity, planar=space.planar)
+        platform = replace(platform, base=base, gravity=base.felt)
     types = leg_types(manipulator)
     legs = []
     for leg_type in types:
         check_scope(manipulator, leg_type, space)
     check_solvable(manipulator)
+    check_dependence(manipulator)
     for leg_type in types:
         legs.append(_derive_leg(book, manipulator, space, platform, leg_type))
     writer = PlatformWriter(book, space, platform, [leg for leg, _ in legs])
@@ -67,6 +73,8 @@ def derive(manipulator: Manipulator) -> Derivation:
     _potential(book, platform, writer, [leg for leg, _ in legs], [k for _, k in legs])
     _dissipation(book, [leg for leg, _ in legs])
     _motors(book, manipulator, [leg for leg, _ in legs])
+    for leg, motion in legs:
+        write_margins(book, leg.g, motion.q, _starts(manipulator))
     write_lengths(book, [leg.g for leg, _ in legs])
     book.coordinates = _coordinates(manipulator, space, [leg for leg, _ in legs])
     equal = (pair for leg, _ in legs for pair in leg.g.same_axes())
@@ -97,10 +105,12 @@ def _coordinates(manipulator: Manipulator, space: TaskSpace, legs: list[Leg]) ->
         actuators=tuple((i, j) for i, j, joint in joints if joint.actuated),
         extras=tuple((i, j) for i, j, joint in joints if joint.extra),
         constraints=tuple(index for index, *_ in constraints),
+        limited=tuple((i, j) for i, j, joint in joints if joint.has_stroke),
         turning=tuple(joint.kind.is_hinge for *_, joint in joints),
         home=(tuple(manipulator.home.X), tuple(manipulator.home.q)),
         actuation=actuation(manipulator),
-        transmits_moments=any(leg.motion.n for leg in legs),
+        overconstrained=mobility(manipulator).overconstrained,
+        transmits_moments=any(leg.motion.n or leg.dynamics.moment != ZeroVector for leg in legs),
         constraint_units=tuple(unit for *_, unit in constraints),
         names=tuple(
             f"{manipulator.legs[i].name or f'leg{i + 1}'}_{joint.name or f'joint{j + 1}'}"
@@ -141,7 +151,7 @@ def _derive_leg(
         + (_COMPOSITE if g.composite else "")
         + (_MOMENTS if g.pairs else "")
     )
-    forces = write_joint_forces(book, g, motion, kinematics.q, prefix)
+    forces = write_joint_forces(book, g, motion, kinematics.q, kinematics.end_turning)
     book.chapter(f"{prefix}-N", f"Newton-Euler of a {title} leg", text, prefix)
     dynamics = DynamicsWriter(book, g, platform, motion, kinematics, bodies, forces).run()
     leg = Leg(g, motion, dynamics)
@@ -263,11 +273,7 @@ def _joint_outputs(
     book: Book, manipulator: Manipulator, leg: Leg, inverse: InverseKinematics
 ) -> None:
     """Displacements, rates and accelerations of the joints; the leg's force."""
-    starts, total = [], 0
-    for member in manipulator.legs:
-        starts.append(total)
-        total += len(member.joints)
-    indices = leg.g.leg_type.indices
+    starts, indices = _starts(manipulator), leg.g.leg_type.indices
     for j in range(1, leg.g.count + 1):
         rows = tuple(starts[i] + j - 1 for i in indices)
         for array, value in (
@@ -298,6 +304,11 @@ def _joint_outputs(
                 tuple(indices),
             )
         )
+
+
+def _starts(manipulator: Manipulator) -> list[int]:
+    """Where the joints of each leg begin in q."""
+    return [sum(len(m.joints) for m in manipulator.legs[:i]) for i in range(len(manipulator.legs))]
 
 
 def _closure_outputs(book: Book, leg: Leg, frame: str, space: TaskSpace) -> None:
@@ -376,7 +387,7 @@ def _potential(
     sprung = any(leg.dynamics.forces.stored for leg in legs)
     text = "Weight times height, zero at the base origin" + ", and the energy of springs" * sprung
     book.chapter("V", "Potential energy", f"{text}.")
-    total: Any = -Dot(platform.gravity, writer.mass * platform.t + writer.moment)
+    total: Any = -Dot(platform.weight, writer.mass * platform.t + writer.moment)
     for leg, motion in zip(legs, kinematics, strict=True):
         g = leg.g
         terms: list[Any] = []
@@ -386,7 +397,7 @@ def _potential(
             terms.append(body.first_moment)
         moment = vector_sum(terms)
         if moment != ZeroVector:
-            total = total + sum_over_legs(-Dot(platform.gravity, moment), leg.name)
+            total = total + sum_over_legs(-Dot(platform.weight, moment), leg.name)
         total = total + sum_over_legs(leg.dynamics.forces.potential, leg.name)
     energy = book.define("potential", total, r"\mathcal E", "potential energy", Law.ENERGY)
     book.outputs.append(Output("potential", energy, ((0, 0),)))

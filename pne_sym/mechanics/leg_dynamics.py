@@ -243,7 +243,7 @@ class DynamicsWriter:
         frame = g.frame("axes", body.group)
         relative = self._relative_acceleration(body)
         turning: Any = ZeroVector
-        if body.group:
+        if omega != ZeroVector:
             turning = self.write.define(
                 f"phi_{j}",
                 Cross(alpha, h) + Cross(omega, Cross(omega, h)),
@@ -671,11 +671,12 @@ class DynamicsWriter:
 
     def _moments(self, result: LegDynamics) -> None:
         """The moment that the leg transmits, with its linear form."""
-        if self.G_m == ZeroVector:
+        total = self.G_m + self.forces.end
+        if total == ZeroVector:
             return
         c = self.write.define(
             "c_m",
-            -self.G_m,
+            -total,
             r"\mathbf c_m",
             "moment of the leg on the platform without actuation",
             Law.REDUCTION,

@@ -6,7 +6,7 @@ Reference: sections 2.2, 2.3 and 2.5.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
 
@@ -22,7 +22,7 @@ from pne_sym.mechanics.constraints import (
 from pne_sym.mechanics.inverse_kinematics import InverseKinematics
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.linear_writer import Collection, LegMotion, LegRates, LegScrews, LinearWriter
-from pne_sym.mechanics.platform_motion import PlatformMotion
+from pne_sym.mechanics.platform_motion import BaseMotion, PlatformMotion
 from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.model.kinematics import TaskSpace
 from pne_sym.vector import (
@@ -95,6 +95,16 @@ yd_#       | \dot y_{#}               | given RATE | U/s
     rate of extra joint #
 ydd_#      | \ddot y_{#}              | given JOINT_ACCELERATION | U/s^2
     acceleration of extra joint #
+S_ddot_b   | \ddot{\mathbf S}_b       | MOVING_FRAME | beyond the paper
+    acceleration of the connection point in space, less that of the base origin
+a_b0       | \mathbf a_{b0}           | MOVING_FRAME | beyond the paper
+    acceleration of the base point, less that of the base origin
+omega_b#   | \boldsymbol\omega_{b#}   | MOVING_FRAME | beyond the paper
+    angular velocity of link # in space
+W_b#       | \mathbf W_{b#}           | DEFINITION symmetric
+    centripetal tensor of link # in space
+zeta_b#    | \boldsymbol\zeta_{b#}    | MOVING_FRAME | beyond the paper
+    angular acceleration of link # from the turning of its axis in space
 beta_#     | \boldsymbol\beta_{#}     | RATE
     angular acceleration of link # at zero joint accelerations
 B_#        | \mathbf B_{#}            | DEFINITION
@@ -130,6 +140,13 @@ _REMAINDERS = (
 _TENSOR = (
     r"The acceleration tensor saves work: "
     r"$`\mathbf B_j\,\mathbf r=\boldsymbol\alpha_j\times\mathbf r+\mathbf C_j\,\mathbf r`$."
+)
+
+
+_WITH_BASE = (
+    r"Velocities and accelerations in space, in axes that turn with the base: those relative to "
+    r"the base, and those of a point or body that is carried along. That of the base origin counts "
+    r"with gravity, $`\mathbf g_f`$."
 )
 
 
@@ -198,6 +215,7 @@ class MotionWriter:
             f"{prefix}-V", f"Rates of a {leg_type.architecture} leg", _RATES, leg_type.name
         )
         rates = self.velocity()
+        self.end_turning = self.p.omega - rates.omega[self.g.group[self.g.count]]
         self.book.chapter(
             f"{prefix}-A",
             f"Accelerations of a {leg_type.architecture} leg",
@@ -269,7 +287,9 @@ class MotionWriter:
     def velocity(self) -> LegRates:
         """Velocity of the connection point, joint screws, reciprocal wrenches, rates."""
         g, p = self.g, self.p
-        S_dot = self.eq("S_dot", p.t_dot + Cross(p.omega, g.platform_point), body="base")
+        S_dot = self.S_dot = self.eq(
+            "S_dot", p.t_dot + Cross(p.omega, g.platform_point), body="base"
+        )
         turning = [j for j in range(1, g.count + 1) if g.turns(j)]
         self.spans = {group: self.span(group) for group in [0, *turning]}
         rods: dict[int, Vector] = {}
@@ -470,8 +490,10 @@ class MotionWriter:
         S_ddot = self.eq("S_ddot", a_p + u_1, body="base", forms=self._platform_form())
         collection.known[S_ddot] = linear_form(a_p + u_1, [a_p], {})
         bias = self._bias(rates)
-        motion = self._joint_accelerations(rates, collection, S_ddot, bias)
-        self._angular_accelerations(motion, bias)
+        motion, coriolis = self._joint_accelerations(rates, collection, S_ddot, bias), bias.coriolis
+        if p.base:
+            motion, coriolis = self._with_base(motion, p.base)
+        self._angular_accelerations(motion, coriolis)
         self.motion = motion
         self._origin_accelerations(motion)
         return motion
@@ -556,14 +578,54 @@ class MotionWriter:
             found.append(self.eq("nu_#", Dot(rate, p.omega - omega) - Dot(n, beta[last]), k))
         return found
 
-    def _angular_accelerations(self, motion: LegMotion, bias: _Bias) -> None:
+    def _with_base(
+        self, motion: LegMotion, base: BaseMotion
+    ) -> tuple[LegMotion, dict[int, Vector]]:
+        """The motion in space, and what the turning of axes adds: the base moves."""
+        g, w = self.g, base.omega
+        self.book.chapter(
+            f"{g.leg_type.name}-B",
+            f"Motion of a {g.leg_type.architecture} leg with its base",
+            _WITH_BASE,
+            g.leg_type.name,
+        )
+        r, coriolis = self.p.t + g.platform_point, Cross(w, self.S_dot) * 2
+        total = motion.S_ddot + Cross(base.alpha, r) + Cross(w, Cross(w, r)) + coriolis
+        forms = (motion.S_ddot + base.tensor @ r + coriolis,)
+        S_ddot = self.eq("S_ddot_b", total, body="base", forms=forms)
+        motion.known[S_ddot] = linear_form(total, [motion.a_p], motion.known)
+        origin = self.eq(
+            "a_b0",
+            Cross(base.alpha, g.base_point) + Cross(w, Cross(w, g.base_point)),
+            body="base",
+            forms=(base.tensor @ g.base_point,),
+        )
+        omega, spin, turned = {0: w}, {0: ZeroTensor}, {0: ZeroVector}
+        for j in self.spans:
+            if j:
+                previous, frame = omega[g.group[j - 1]], g.frame("axes", j)
+                omega[j] = self.eq("omega_b#", previous + motion.qd[j] * g.spin(j), j, body=frame)
+                spin[j] = self.eq("W_b#", Compose(Skew(omega[j]), Skew(omega[j])), j, body=frame)
+                turn = motion.qd[j] * Cross(previous, g.spin(j))
+                turned[j] = self.eq.named("zeta_b#", turn, j, body=frame)
+        return replace(
+            motion,
+            omega=omega,
+            spin=spin,
+            S_ddot=S_ddot,
+            alpha={0: base.alpha},
+            acceleration_tensor={0: (base.tensor, base.tensor)},
+            origin_acceleration={0: origin},
+        ), turned
+
+    def _angular_accelerations(self, motion: LegMotion, coriolis: dict[int, Vector]) -> None:
         g = self.g
         for j in self.spans:
             if j == 0:
                 continue
             previous = motion.alpha[g.group[j - 1]]
             frame = g.frame("axes", j)
-            rhs = previous + motion.qdd[j] * g.spin(j) + bias.coriolis[j]
+            rhs = previous + motion.qdd[j] * g.spin(j) + coriolis[j]
             motion.alpha[j] = self.eq.collected(
                 "alpha_#",
                 rhs,

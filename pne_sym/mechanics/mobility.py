@@ -114,7 +114,8 @@ section 3 of the paper: ordinary (3.1)
 def check_mobility(manipulator: Manipulator) -> Mobility:
     """Mobility, with a warning where the drives leave freedoms that were not marked passive.
 
-    Warns with `SpecWarning`; passive extra coordinates are meant to move by themselves.
+    Warns with `SpecWarning`, also where constraints follow from others; passive extra coordinates
+    are meant to move by themselves.
     """
     found = mobility(manipulator)
     meant = found.freedoms - found.passive
@@ -128,6 +129,13 @@ def check_mobility(manipulator: Manipulator) -> Mobility:
     elif found.undriven > found.passive:
         free = _count(found.undriven - found.passive, "freedom", "freedoms")
         problem = f"all drives held, the mechanism can move at home ({free}): H is singular there"
+    if found.overconstrained:
+        dependent = (
+            f"overconstrained: of the {found.constraints} constraints that the legs put on the "
+            f"platform, {found.overconstrained} follow from the others; motion and actuator forces "
+            "are determined, lambda and the reactions are those of least norm"
+        )
+        warnings.warn(f"{manipulator.name}: legs: {dependent}", SpecWarning, stacklevel=2)
     if problem:
         warnings.warn(f"{manipulator.name}: legs: {problem}", SpecWarning, stacklevel=2)
     return found
@@ -137,22 +145,12 @@ def check_solvable(manipulator: Manipulator) -> None:
     """Refuse what has no determined dynamics, with the mechanical reason.
 
     Raises:
-        SpecError: no joint is driven; the constraints that the legs put on the platform follow
-            from one another at home, so that their forces are undetermined; nothing moves.
+        SpecError: no joint is driven; nothing moves.
     """
     found = mobility(manipulator)
     if not found.drives:
         raise SpecError(
             manipulator.name, "legs", "no joint is driven", "actuated = true for some joint"
-        )
-    if found.overconstrained:
-        raise SpecError(
-            manipulator.name,
-            "legs",
-            f"overconstrained: of the {found.constraints} constraints that the legs put on the "
-            f"platform, {found.overconstrained} follow from the others at home, so that their "
-            "forces are undetermined",
-            "legs whose constraints are independent: more joints in a leg, or another home",
         )
     if not found.freedoms:
         raise SpecError(

@@ -16,6 +16,7 @@ from pne_sym.mechanics.completion import LeftOut
 from pne_sym.mechanics.leg_dynamics import LegDynamics
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.linear_writer import LegMotion
+from pne_sym.mechanics.moving_base import carried_platform
 from pne_sym.mechanics.platform_blocks import BlockWriter
 from pne_sym.mechanics.platform_motion import PlatformMotion
 from pne_sym.model.kinematics import TaskSpace
@@ -185,6 +186,7 @@ class PlatformWriter:
                 body="base" if space.planar else "platform",
                 reference="Eq. 33",
             )
+        self.from_base = carried_platform(book, p, self.mass, h, self.inertia)
         self._required()
 
     def _tensor_form_newton(self) -> tuple[Any, ...]:
@@ -198,7 +200,7 @@ class PlatformWriter:
         if self.n_newton is not None:
             force = book.define(
                 "R_t",
-                self.total(lambda leg: -leg.dynamics.force, self.n_newton),
+                self.total(lambda leg: -leg.dynamics.force, self.n_newton + self.from_base[0]),
                 r"\mathbf R_t",
                 "force that actuators and external wrench must give",
                 Law.ASSEMBLY,
@@ -213,7 +215,7 @@ class PlatformWriter:
                     lambda leg: (
                         -Cross(leg.g.platform_point, leg.dynamics.force) - leg.dynamics.moment
                     ),
-                    self.n_euler,
+                    self.n_euler + self.from_base[1],
                 ),
                 r"\mathbf R_\alpha",
                 "moment that actuators and external wrench must give",

@@ -35,19 +35,39 @@ from pne_sym.vector import (
 
 
 @dataclass(frozen=True)
+class BaseMotion:
+    """Motion of a base that moves, in its axes.
+
+    Attributes:
+        omega: angular velocity.
+        alpha: angular acceleration.
+        tensor: alpha~ + omega~ omega~, the acceleration tensor.
+        weight: acceleration of gravity.
+        felt: that less the acceleration of the base origin.
+    """
+
+    omega: Vector
+    alpha: Vector
+    tensor: Any
+    weight: Vector
+    felt: Vector
+
+
+@dataclass(frozen=True)
 class PlatformMotion:
     """Symbols of the platform's motion and of gravity.
 
     Attributes:
         t, t_dot, t_ddot: position, velocity, acceleration of the origin.
         omega, alpha: angular velocity and acceleration.
-        gravity: acceleration of gravity.
+        gravity: acceleration of gravity, less that of a moving base.
         spin: omega~ omega~, the tensor of centripetal acceleration.
         tensor: alpha~ + omega~ omega~, the acceleration tensor.
         mass: platform mass (scalar).
         centre: platform origin to centre of mass.
         inertia: tensor about the centre of mass.
         payload: the same three of a second body, or None.
+        base: motion of the base, or None where it is at rest.
     """
 
     t: Vector
@@ -62,6 +82,12 @@ class PlatformMotion:
     centre: Vector
     inertia: Any
     payload: tuple[Any, Vector, Any] | None = None
+    base: BaseMotion | None = None
+
+    @property
+    def weight(self) -> Vector:
+        """Acceleration of gravity."""
+        return self.base.weight if self.base else self.gravity
 
 
 def introduce_platform(book: Book, manipulator: Manipulator, space: TaskSpace) -> PlatformMotion:

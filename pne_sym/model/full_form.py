@@ -30,6 +30,8 @@ def to_full_form(manipulator: Manipulator) -> Plain:
     }
     if m.fixed_centre is not None:
         form["fixed_centre"] = list(m.fixed_centre)
+    if m.moving_base:
+        form["moving_base"] = True
     form["platform"] = _body(m.platform)
     if m.payload is not None:
         form["platform"] = _body(m.platform) | {"payload": _body(m.payload)}
@@ -83,6 +85,8 @@ def _platform_joint(joint: PlatformJoint) -> Plain:
         form["axis_platform"] = list(joint.axis_platform)
     if joint.rotation is not None:
         form["rotation"] = _rows(joint.rotation)
+    if joint.friction is not None:
+        form["friction"] = _present(joint.friction)
     return form
 
 

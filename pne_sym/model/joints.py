@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
 from pne_sym.model.body import MASSLESS, read_body
+from pne_sym.model.effects import Friction
 from pne_sym.model.entry import Entry, Table
 from pne_sym.model.errors import SpecError
 from pne_sym.model.joint_kinds import WrittenJoint
@@ -14,14 +16,14 @@ from pne_sym.model.manipulator import ZERO3, Joint, PlatformJoint, Vector3
 from pne_sym.model.names import read_part_name
 from pne_sym.model.platform_kinds import PlatformJointKind
 from pne_sym.model.read_effects import FIELDS as EFFECTS
-from pne_sym.model.read_effects import read_effects
+from pne_sym.model.read_effects import read_effects, read_friction
 from pne_sym.model.spherical import USUAL
 from pne_sym.model.values import ROUNDING, axis, flags, number, offset, rotation
 
 FIELDS = (
     "kind", "axis", "axes", "offset", "pitch", "actuated", "extra", "link", *EFFECTS, "name"
 )  # fmt: skip
-PLATFORM_FIELDS = ("kind", "offset", "axis_link", "axis_platform", "rotation")
+PLATFORM_FIELDS = ("kind", "offset", "axis_link", "axis_platform", "rotation", "friction")
 MAX_JOINTS = 12
 
 _OUT_OF_PLANE: Vector3 = (0.0, 0.0, 1.0)
@@ -100,14 +102,25 @@ def read_platform_joint(entry: Entry, *, plane: bool) -> PlatformJoint:
     kind = PlatformJointKind(table.require("kind", letters(PlatformJointKind)).choice(known))
     start = table.get("offset")
     point = offset(start, plane=plane) if start else ZERO3
+    friction = _friction(table, kind)
     if plane:
-        return _planar_platform_joint(table, kind, point)
+        return replace(_planar_platform_joint(table, kind, point), friction=friction)
     if "axis_link" not in kind.fields:
         axes = "axis_link", "axis_platform"
         table.refuse(axes, f"a platform joint of kind {kind} has no axis")
     if "rotation" not in kind.fields:
         table.refuse(("rotation",), _NO_ROTATION)
-    return PlatformJoint(kind, point, **{name: _stated(table, name) for name in kind.fields})
+    stated = {name: _stated(table, name) for name in kind.fields}
+    return PlatformJoint(kind, point, **stated, friction=friction)
+
+
+def _friction(table: Table, kind: PlatformJointKind) -> Friction | None:
+    entry = table.get("friction")
+    if entry is None or entry.value is False:
+        return None
+    if len(kind.right_angles) == len(_OUT_OF_PLANE):
+        raise entry.fault(f"none: a platform joint of kind {kind} does not turn")
+    return read_friction(entry)
 
 
 _NO_ROTATION = "only a rigid platform joint has it"

@@ -14,7 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pne_sym.model.manipulator import Joint, Leg, Vector3
+from pne_sym.model.effects import Actuator, Friction, Spring
+from pne_sym.model.manipulator import Leg, Vector3
 
 TOLERANCE = 1e-9
 Key = tuple[object, ...]
@@ -97,7 +98,8 @@ def structure_key(leg: Leg) -> Key:
             joint.link.is_massless,
             _axis_key(joint.axis),
             tuple(component == 0.0 for component in joint.offset),
-            _effects_key(joint),
+            _present(joint.friction, joint.spring, joint.actuator),
+            joint.has_stroke,
         )
         for joint in leg.joints
     )
@@ -111,12 +113,12 @@ def structure_key(leg: Leg) -> Key:
         tuple(component == 0.0 for component in end.offset),
         _axis_key(end.axis_link),
         _axis_key(end.axis_platform),
+        _present(end.friction),
     )
 
 
-def _effects_key(joint: Joint) -> tuple[object, ...]:
-    """Which parameters there are of friction, spring and motor; their values are live."""
-    effects = (joint.friction, joint.spring, joint.actuator)
+def _present(*effects: Friction | Spring | Actuator | None) -> tuple[object, ...]:
+    """Which parameters there are of friction, springs and motors; their values are live."""
     return tuple(
         effect and tuple(name for name, value in vars(effect).items() if value is not None)
         for effect in effects

@@ -95,7 +95,7 @@ def _structure(shared: Table, space: Space) -> Key | None:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", SpecWarning)  # they come with the legs
             bare = Table(shared.entry, {})
-            end = _platform_joint(bare, shared, plane=plane)
+            end = _platform_joint(bare, shared, space)
             joints = _joints(bare, shared, end, plane=plane)
     except SpecError:
         return None
@@ -113,7 +113,7 @@ def _read_leg(entry: Entry, types: _LegTypes, used: set[str], space: Space) -> L
     plane = is_plane(space)
     shared = _shared(table, types, used)
     frame, named, of = table.get("base_frame"), table.get("name"), table.get("type")
-    end = _platform_joint(table, shared, plane=plane)
+    end = _platform_joint(table, shared, space)
     return Leg(
         type=of.text() if of else "",
         name=read_part_name(named) if named else "",
@@ -184,15 +184,20 @@ def _overridden(entries: list[Entry], own: Entry) -> list[Entry]:
     return result
 
 
-def _platform_joint(table: Table, shared: Table | None, *, plane: bool) -> PlatformJoint:
+def _platform_joint(table: Table, shared: Table | None, space: Space) -> PlatformJoint:
     own = table.get("platform_joint")
     common = shared.get("platform_joint") if shared else None
     if common and isinstance(common.value, str):
         common = replace(common, value={"kind": common.value})
     entry = own.over(common) if own else common
     if entry is None:
-        return PlatformJoint(PlatformJointKind.REVOLUTE if plane else PlatformJointKind.SPHERICAL)
-    return read_platform_joint(entry, plane=plane)
+        return PlatformJoint(
+            PlatformJointKind.REVOLUTE if is_plane(space) else PlatformJointKind.SPHERICAL
+        )
+    joint = read_platform_joint(entry, plane=is_plane(space))
+    if joint.friction and space is Space.POINT:
+        raise entry.fault("no friction: an output point does not turn")
+    return joint
 
 
 def _platform_point(table: Table, space: Space) -> tuple[float, float, float]:

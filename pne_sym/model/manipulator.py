@@ -106,6 +106,11 @@ class Joint:
     name: str = ""
 
     @property
+    def has_stroke(self) -> bool:
+        """Whether its displacement has limits."""
+        return self.limits is not None and self.limits.displacement is not None
+
+    @property
     def turns(self) -> bool:
         """Whether the link turns against the link before it."""
         return self.kind.turns
@@ -132,6 +137,7 @@ class PlatformJoint:
         axis_platform: axis fixed in the platform (R, U), platform frame.
         rotation: platform axes in the last link's frame (rigid):
             base_R_link rotation = base_R_platform.
+        friction: against the turning of the platform relative to the link; None: absent.
     """
 
     kind: PlatformJointKind
@@ -139,6 +145,7 @@ class PlatformJoint:
     axis_link: Vector3 | None = None
     axis_platform: Vector3 | None = None
     rotation: Matrix3 | None = None
+    friction: Friction | None = None
 
     @property
     def right_angles(self) -> tuple[tuple[Direction, Direction], ...]:
@@ -207,6 +214,7 @@ class Manipulator:
         symbols: how the report writes quantities of the derivation: (name, symbol) pairs,
             sorted by name.
         payload: a second body fixed in the platform, in the platform frame; None: absent.
+        moving_base: the motion of the base is an input; gravity is in world axes.
     """
 
     name: str
@@ -219,3 +227,4 @@ class Manipulator:
     fixed_centre: Vector3 | None = None
     symbols: tuple[tuple[str, str], ...] = ()
     payload: Body | None = None
+    moving_base: bool = False

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import TypeVar
 
 from pne_sym.model.effects import Actuator, Effects, Friction, Limits, Spring
@@ -39,6 +40,9 @@ def read_effects(
     entry = table.get("actuator")
     if entry:
         motors = _driven(entry, motors, actuated)
+    entry = table.get("limits")
+    if entry:
+        limits = _of_driven_efforts(entry, limits, actuated)
     return tuple(map(Effects, frictions, springs, motors, limits))
 
 
@@ -71,6 +75,22 @@ def _driven(
     if idle and (listed or not any(actuated)):
         raise entry.fault("no motor where the joint is not actuated")
     return tuple(motor if driven else None for motor, driven in zip(motors, actuated, strict=True))
+
+
+def _of_driven_efforts(
+    entry: Entry, limits: tuple[Limits | None, ...], actuated: Sequence[bool]
+) -> tuple[Limits | None, ...]:
+    """Limits with efforts of the driven freedoms: one table's effort is meant for these alone."""
+    listed, found = isinstance(entry.value, list | tuple), []
+    for of, driven in zip(limits, actuated, strict=True):
+        if driven or of is None or of.effort is None:
+            found.append(of)
+        elif listed or not any(actuated):
+            raise entry.fault("no effort where the joint is not actuated: nothing acts there")
+        else:
+            rest = replace(of, effort=None)
+            found.append(None if rest == Limits() else rest)
+    return tuple(found)
 
 
 def read_friction(entry: Entry) -> Friction:

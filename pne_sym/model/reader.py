@@ -28,6 +28,7 @@ FIELDS = (
     "space",
     "gravity",
     "fixed_centre",
+    "moving_base",
     "platform",
     "leg_types",
     "legs",
@@ -100,6 +101,7 @@ def from_mapping(data: Mapping[str, object], source: str) -> Manipulator:
         home=home,
         fixed_centre=centre,
         symbols=read_symbols(table.get("symbols")),
+        moving_base=_flag(table, "moving_base"),
     )
 
 
@@ -130,6 +132,11 @@ def _title(table: Table, name: str) -> str:
     if not 1 <= len(title) <= LONGEST_TITLE or not title.isprintable():
         raise entry.fault(f"one line of 1 to {LONGEST_TITLE} printable characters")
     return title
+
+
+def _flag(table: Table, name: str) -> bool:
+    entry = table.get(name)
+    return entry.flag() if entry else False
 
 
 def _gravity(table: Table, space: Space) -> Vector3:

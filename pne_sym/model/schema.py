@@ -73,6 +73,7 @@ def _specification() -> Schema:
         "space": {"enum": spaces},
         "gravity": _ref("vector"),
         "fixed_centre": _list_of(_ref("number"), 3),
+        "moving_base": _FLAG,
         "platform": _ref("platform"),
         "leg_types": {
             "type": "object",
@@ -203,6 +204,7 @@ def _platform_joint_fields() -> dict[str, Schema]:
         "axis_link": _ref("axis"),
         "axis_platform": _ref("axis"),
         "rotation": _ref("rotation"),
+        "friction": {"anyOf": [_ref("friction"), {"const": False}]},
     }
 
 

@@ -11,6 +11,7 @@ MEANING: dict[str, dict[str, str]] = {
         "the scalar last), translational (x, y, z), spherical (quaternion).",
         "gravity": "Acceleration in the base frame, m/s^2. Default: 9.81 downwards, along -z, in "
         "the plane along -y.",
+        "moving_base": "The base moves: functions take its motion, gravity is in world axes.",
         "fixed_centre": "Space spherical only: the point about which the platform turns, base "
         "frame, m.",
         "platform": "Mass, centre of mass and inertia of the platform, platform frame.",
@@ -74,6 +75,7 @@ MEANING: dict[str, dict[str, str]] = {
         "axis_link": "R, U in space: axis fixed in the last link, last link's frame.",
         "axis_platform": "R, U in space: axis fixed in the platform, platform frame.",
         "rotation": "rigid: platform axes in the last link's frame.",
+        "friction": "Against the turning of the platform relative to the last link.",
     },
     "leg_type": {
         "joints": "From the base to the platform.",

@@ -18,6 +18,8 @@ SEARCH_STEPS, HALVINGS = 50, 12
 """Steps of a search for a pose, and how often each may be halved."""
 FOUND, CLOSE = 1e-9, 1e-14
 """A residual [m, rad] that counts as found, and one at which the search ends."""
+REST = np.concatenate((np.eye(3).ravel(), np.zeros(9)))
+"""A base that does not move."""
 
 
 @dataclass(frozen=True)
@@ -104,7 +106,7 @@ class Interpreter:
         for step in function.steps:
             state.do(step)
         outputs = [np.array(state.values[o.name]) for o in function.outputs]
-        status = state.finished(outputs)
+        status = state.status if function.unbounded else state.finished(outputs)
         for array in outputs:
             array[status != Status.OK] = np.nan
         return Answer(tuple(outputs), status)
@@ -115,7 +117,7 @@ class Interpreter:
             return np.broadcast_to(np.asarray(given[name], dtype=float), (states, *shape))
         if default is None:
             raise KeyError(name)
-        fill = {Default.ZEROS: np.zeros(shape), Default.ONES: np.ones(shape)}
+        fill = {Default.ZEROS: np.zeros(shape), Default.ONES: np.ones(shape), Default.REST: REST}
         value = self.home_q if default is Default.HOME_Q else fill[default]
         return np.broadcast_to(value, (states, *shape))
 

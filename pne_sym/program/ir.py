@@ -78,6 +78,11 @@ class Assignment:
     equation: str
 
 
+VECTORS = ("X", "V", "A", "base", "q")
+"""What functions take, in this order: pose, velocity, acceleration, motion of the base,
+displacements."""
+
+
 @dataclass(frozen=True)
 class Check:
     """A guard: failing means the state is impossible.

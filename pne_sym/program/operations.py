@@ -28,7 +28,8 @@ class Operation:
     Attributes:
         name: in steps.
         compute: results, in order, of operands over states; its docstring says what it means.
-        status: of a state in which a result is not finite although all operands are.
+        status: of a state in which a result is not finite although all operands are; OK where that
+            is meant.
     """
 
     name: str
@@ -243,6 +244,20 @@ def wrap_turns(a: Array, *, numbers: tuple[int, ...]) -> tuple[Array, ...]:
     with np.errstate(all="ignore"):
         result[:, places] = np.pi - np.remainder(np.pi - a[:, places], 2.0 * np.pi)
     return (result,)
+
+
+@_operation(Status.OK)
+def unlimited(a: Array, *, numbers: tuple[int, ...]) -> tuple[Array, ...]:
+    """a, infinite at the numbered entries."""
+    result = np.array(a)
+    result[:, list(numbers)] += np.inf
+    return (result,)
+
+
+@_operation()
+def not_negative(a: Array) -> tuple[Array, ...]:
+    """1 where no entry of a is negative, else 0."""
+    return (np.where(finite(a), (a >= 0.0).all(axis=1), np.nan),)
 
 
 # ---- linear equations ----------------------------------------------------------------------------

@@ -19,6 +19,7 @@ class Default(enum.StrEnum):
     ZEROS = "zeros"
     ONES = "ones"
     HOME_Q = "displacements at home"
+    REST = "a base at rest"
 
 
 @dataclass(frozen=True)
@@ -138,6 +139,7 @@ class PublicFunction:
         also: what these counts leave out.
         gives_status: the status of every state is returned where a back end has no other place
             for it.
+        unbounded: entries of what it gives may be infinite; of others that is INVALID.
     """
 
     name: str
@@ -151,6 +153,7 @@ class PublicFunction:
     counted: str = ""
     also: str = ""
     gives_status: bool = False
+    unbounded: bool = False
     notes: tuple[str, ...] = ()
 
     @property

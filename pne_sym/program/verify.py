@@ -12,7 +12,7 @@ from typing import Any
 
 import sympy as sp
 
-from pne_sym.program.ir import Block, Check, Function, Program, Store
+from pne_sym.program.ir import VECTORS, Block, Check, Function, Program, Store
 
 _FUNCTIONS = (sp.sin, sp.cos, sp.atan2, sp.acos, sp.Abs, sp.Min)
 _ROOTS = (sp.Rational(1, 2), sp.Rational(-1, 2))
@@ -49,7 +49,7 @@ def _verify_function(name: str, f: Function, shapes: Any, prepared: Mapping[str,
     scope.require(f.name == name, f"calls itself {f.name!r}")
     for value, leg_type in given:
         scope.require(prepared.get(value) == leg_type, f"{value} is not a prepared value")
-    scope.require(set(f.inputs) <= set("XVAq"), f"inputs are {f.inputs}")
+    scope.require(set(f.inputs) <= set(VECTORS), f"inputs are {f.inputs}")
     scope.entries = tuple(f"{vector}_" for vector in f.inputs)
     for a in f.unpack:
         scope.assign(a.target, a.expr, "", a.equation)
@@ -86,7 +86,8 @@ class _Scope:
         for node in (n for e in expressions for n in sp.preorder_traversal(sp.sympify(e))):
             self.require(_is_allowed(node), *what, ": ", node, " is outside the closed set")
             if node.is_Symbol:
-                entry = node.name[:2] in self.entries and node.name[2:].isdigit()
+                vector, line, number = node.name.rpartition("_")
+                entry = vector + line in self.entries and number.isdigit()
                 defined = entry or self.known.get(node.name) in ("", leg_type)
                 self.require(defined, *what, ": ", node, " is not defined before")
                 same = node == sp.Symbol(node.name, real=True)

@@ -27,9 +27,11 @@ def gap_between(
     a, b = np.asarray(before, dtype=float), np.asarray(after, dtype=float)
     if a.shape != b.shape:
         return Gap(float("inf"), f"shapes {list(a.shape[1:])} and {list(b.shape[1:])}", 0.0, 0.0)
-    lost = np.isnan(a) != np.isnan(b)
-    size = np.nanmax(np.maximum(np.abs(a), np.abs(b)), initial=0.0)
-    step = np.where(np.isnan(a) | np.isnan(b), 0.0, np.abs(a - b))
+    both = np.isfinite(a) & np.isfinite(b)
+    lost = ~both & (a != b) & ~(np.isnan(a) & np.isnan(b))
+    a_known, b_known = np.where(both, a, 0.0), np.where(both, b, 0.0)
+    size = np.max(np.maximum(np.abs(a_known), np.abs(b_known)), initial=0.0)
+    step = np.abs(a_known - b_known)
     step[step <= NOISE * floor] = 0.0
     relative = np.where(lost, np.inf, step / (size or 1.0))
     if not relative.size or not relative.max() > 0.0:

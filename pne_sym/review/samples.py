@@ -87,8 +87,17 @@ def random_values(
         "q0": q + drawn("NJ", 0.01),
         "s": rng.uniform(-0.5, 1.5, count),
         "step": drawn("NV", 0.3),
+        "base": _bases(pose, count, rng),
     }
     return found | _orientations(pose, count, rng)
+
+
+def _bases(pose: list[str], count: int, rng: np.random.Generator) -> Array:
+    """Motions of the base: rotations row by row, angular and linear motion."""
+    turns, others = rng.normal(size=(count, 3)), rng.normal(size=(count, 9))
+    if "z" not in pose and "qw" not in pose:  # in the plane
+        turns[:, :2] = 0.0
+    return np.array([[*_turn(v).ravel(), *rest] for v, rest in zip(turns, others, strict=True)])
 
 
 def _orientations(pose: list[str], count: int, rng: np.random.Generator) -> dict[str, Array]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -33,7 +34,7 @@ EULER        |                       | L_c_# L_c_#_#
 FREEDOM      | Eqs. 6, 7             | P_#
 FREEDOM      | Sec. 2.2, joint table | D_#_# Gamma_#
 FRICTION     |                       | dissipation
-FRICTION     | beyond the paper      | friction_#
+FRICTION     | beyond the paper      | friction_# friction_end
 GEOMETRY     |                       | c_# c#_# from_centre_# r_# s_# s#_# size_c# volume_c x_#
 GEOMETRY     |                       | f_c_part f_c_size n_# n#_# n_#_part n#_#_part aside_#
 GEOMETRY     |                       | reference_#
@@ -44,14 +45,19 @@ LOOP_CLOSURE |                       | Kc_# Kd_# Kr_# Ks_# c_# disc_# gap px_# p
 LOOP_CLOSURE |                       | root_# s_# xi_#
 LOOP_CLOSURE | Eq. 37                | gamma_c# phi_c#
 LUMPING      |                       | J_# J_group_# J_star Sigma_# b_c h_# h_group_# h_star
-LUMPING      |                       | legs_size m_star per_turn_# rho_tip_# size size_# spread
+LIMIT        | beyond the paper      | margin_# off_# off#_#
+LUMPING      |                       | half_# legs_size m_star middle_# per_turn_# rho_tip_# size
+LUMPING      |                       | size_# spread vs#_end_p
 LUMPING      |                       | trace_J_# trace_J_group_# un_# um_# uu_# vs#_# end_l#
+MOVING_FRAME | beyond the paper      | B_b S_ddot_b a_b# a_m f_b g_b g_f mu_b omega_b# zeta_b#
+DEFINITION   |                       | W_b#
 NEWTON       |                       | P_c_# T_#
 NEWTON       | Eq. 1                 | f_# phi_#
 NEWTON       | Eq. 3                 | c_true
 NEWTON       | Eq. 32                | f_p
 RATE         |                       | S_dot_rest a_o_# alpha_# beta_# eta_# etad_# nd_m# omega_#
 RATE         |                       | rel zeta_#
+RATE         | beyond the paper      | omega_end
 RATE         | Eq. 23                | S_ddot a_p u_#
 RATE         | Eq. 32                | a_t
 RATE         | Eqs. 10, 11, 17, 18   | acc_#
@@ -83,6 +89,8 @@ MEASURES = {
     Law.FRICTION: {"N", "N m", "W"},
     Law.SPRING: {"N", "N m"},
     Law.ROTOR: {"kg", "kg m^2", "rad/s"},
+    Law.LIMIT: {"-", "m", "m^2"},
+    Law.MOVING_FRAME: {"m/s^2", "rad/s", "rad/s^2", "1/s^2", "N", "N m"},
 }
 
 
@@ -126,7 +134,8 @@ def test_of_the_catalogue(name: str) -> None:
 @pytest.mark.parametrize("name", ["helix at the base", "one slide, universal at the platform"])
 def test_with_friction_springs_and_motors(name: str) -> None:
     random = np.random.default_rng(3)
-    examine(derive(checked(with_effects(drawn(name), random, share=1.0))))
+    spec = replace(with_effects(drawn(name), random, share=1.0), moving_base=True)
+    examine(derive(checked(spec)))
 
 
 def test_every_row_of_the_ledger_is_a_matter_of_the_paper() -> None:

@@ -18,7 +18,7 @@ from pne_sym.model.manipulator import Body, JointKind, PlatformJointKind
 from tests.mechanics.evaluation import Array, Names
 from tests.oracle.closure import leg_closure, perpendicular_pair
 from tests.oracle.coordinates import is_planar, joint_slices, pose_size, task_size
-from tests.oracle.effects import friction, rotors, springs, stored
+from tests.oracle.effects import friction, margins, rotors, springs, stored, turning_friction
 from tests.oracle.jets import cross_matrix
 
 _SLIDE = JointKind.PRISMATIC
@@ -615,6 +615,57 @@ def _friction(f: Facts, j: int) -> Any:
     return friction(f.leg.joints, f.qd[1:])[j - 1]
 
 
+@value_of("vs2_end_p")
+def _end_velocity_scale(f: Facts, j: int) -> Any:
+    law = f.leg.platform_joint.friction
+    assert law is not None
+    return (law.velocity_scale or 0.0) ** 2
+
+
+@value_of("omega_end")
+def _end_turning(f: Facts, j: int) -> Any:
+    return f.platform.angular_velocity - f.motion.angular_velocity[-1]
+
+
+@value_of("friction_end")
+def _end_friction(f: Facts, j: int) -> Any:
+    return turning_friction(f.leg.platform_joint.friction, _end_turning(f, j))
+
+
+@value_of(r"middle_(\d+)")
+def _middle(f: Facts, j: int) -> Any:
+    return float(np.mean(_range(f, j)))
+
+
+@value_of(r"half_(\d+)")
+def _half(f: Facts, j: int) -> Any:
+    return 0.5 * float(np.diff(_range(f, j))[0])
+
+
+@value_of(r"off_(\d+)")
+def _off(f: Facts, j: int) -> Any:
+    off, joint = f.q[j] - _middle(f, j), f.leg.joints[j - 1]
+    wraps = joint.kind is JointKind.REVOLUTE and not joint.extra
+    return off - 2.0 * np.pi * np.round(off / (2.0 * np.pi)) if wraps else off
+
+
+@value_of(r"off2_(\d+)")
+def _off2(f: Facts, j: int) -> Any:
+    return _off(f, j) ** 2
+
+
+@value_of(r"margin_(\d+)")
+def _margin(f: Facts, j: int) -> Any:
+    return margins(f.leg.joints, f.q[1:])[j - 1]
+
+
+def _range(f: Facts, j: int) -> Any:
+    limits = f.leg.joints[j - 1].limits
+    assert limits is not None
+    assert limits.displacement is not None
+    return np.array(limits.displacement)
+
+
 @value_of(r"spring_(\d+)")
 def _spring(f: Facts, j: int) -> Any:
     return springs(f.leg.joints, f.q[1:])[j - 1]
@@ -770,7 +821,7 @@ def _c_true(f: Facts, j: int) -> Any:
 
 @value_of("c_m")
 def _c_m(f: Facts, j: int) -> Any:
-    return -f.combined(moment=True, reduced=False)
+    return -f.combined(moment=True, reduced=False) - _end_friction(f, j)
 
 
 @value_of("Q")

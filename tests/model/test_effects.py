@@ -79,6 +79,10 @@ def test_of_several_freedoms() -> None:
     motor = {"rotor_inertia": 1e-3, "gear_ratio": 9.0}
     driven = compound(UNIVERSAL, actuated=[False, True], actuator=motor)
     assert [joint.actuator for joint in driven] == [None, Actuator(1e-3, 9.0)]
+    pushed = compound(UNIVERSAL, actuated=[False, True], limits={"rate": 2.0, "effort": 9.0})
+    assert [joint.limits for joint in pushed] == [Limits(rate=2.0), Limits(rate=2.0, effort=9.0)]
+    pushed = compound(UNIVERSAL, actuated=[False, True], limits={"effort": 9.0})
+    assert [joint.limits for joint in pushed] == [None, Limits(effort=9.0)]
     slide = compound(CYLINDER, spring=[False, {"stiffness": 7.0}])
     assert [joint.spring for joint in slide] == [None, Spring(7.0)]
     slide = compound(CYLINDER, actuated=[False, True], actuator=motor)
@@ -106,6 +110,11 @@ def test_of_several_freedoms() -> None:
         ({"limits": {"displacement": [0.0]}}, "list of two numbers"),
         ({"limits": {"rate": 0.0}}, "a positive number"),
         ({"limits": {"effort": True}}, "a number"),
+        ({"actuated": False, "limits": {"effort": 5.0}}, "no effort where the joint is not"),
+        (
+            {**UNIVERSAL, "axis": None, "actuated": [True, False], "limits": [{"effort": 5.0}] * 2},
+            "no effort where the joint is not actuated",
+        ),
         ({**CYLINDER, "friction": {"viscous": 1.0}, "actuated": False}, "a list of 2"),
         (
             {**UNIVERSAL, "axis": None, "actuated": [True, False],
@@ -169,3 +178,17 @@ def test_a_leg_overrides_its_type() -> None:
     form["legs"] = [own | {"joints": {"0": {"friction": False}}}]
     assert not list(VALIDATOR.iter_errors(form))
     assert from_mapping(form, "spec").legs[0].joints[0].friction is None
+
+
+def test_friction_of_the_platform_joint() -> None:
+    form = spatial()
+    form["legs"][0]["platform_joint"] = {"kind": "S", "friction": {"viscous": 2.0}}
+    assert not list(VALIDATOR.iter_errors(form))
+    manipulator = from_mapping(form, "spec")
+    assert manipulator.legs[0].platform_joint.friction == Friction(2.0)
+    assert from_mapping(to_full_form(manipulator), "again") == manipulator
+    form["legs"][0]["platform_joint"]["friction"] = False
+    assert from_mapping(form, "spec").legs[0].platform_joint.friction is None
+    form["legs"][0]["platform_joint"] = {"kind": "rigid", "friction": {"viscous": 2.0}}
+    with pytest.raises(SpecError, match=r"platform_joint.friction: .* of kind rigid does not turn"):
+        from_mapping(form, "spec")

@@ -1,4 +1,4 @@
-"""Friction, springs and rotors as forces along all joints, from a specification's numbers."""
+"""Friction, springs, rotors and limits of all joints, from a specification's numbers."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from pne_sym.model.effects import Friction
 from pne_sym.model.manipulator import Joint, JointKind
 from tests.oracle.jets import Array
 
@@ -21,6 +22,16 @@ def friction(joints: Iterable[Joint], qd: Array) -> Array:
         if of.coulomb is not None and of.velocity_scale is not None:
             forces[k] += of.coulomb * rate / np.hypot(rate, of.velocity_scale)
     return forces
+
+
+def turning_friction(of: Friction | None, relative: Array) -> Array:
+    """(3,) moment that drags the last link along with a platform turning relative to it."""
+    if of is None:
+        return np.zeros(3)
+    size = (of.viscous or 0.0) * relative
+    if of.coulomb is not None and of.velocity_scale is not None:
+        size = size + of.coulomb * relative / np.hypot(np.linalg.norm(relative), of.velocity_scale)
+    return np.asarray(size)
 
 
 def springs(joints: Iterable[Joint], q: Array) -> Array:
@@ -52,3 +63,16 @@ def rotors(joints: Iterable[Joint]) -> Array:
     found = [j.actuator.rotor_inertia * j.actuator.gear_ratio**2 if j.actuator else 0.0
              for j in joints]  # fmt: skip
     return np.array(found)
+
+
+def margins(joints: Iterable[Joint], q: Array) -> Array:
+    """(m,) distances from the nearer limit, at the best of the angles that are the same."""
+    found = np.full(len(q), np.inf)
+    for k, (joint, value) in enumerate(zip(joints, q, strict=True)):
+        if joint.limits is None or joint.limits.displacement is None:
+            continue
+        least, largest = joint.limits.displacement
+        turns = range(-9, 10) if joint.kind is JointKind.REVOLUTE and not joint.extra else (0,)
+        same = [value + 2.0 * np.pi * turn for turn in turns]
+        found[k] = max(min(angle - least, largest - angle) for angle in same)
+    return found

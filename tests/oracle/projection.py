@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pne_sym.model.manipulator import Body, Leg, Manipulator
+from tests.oracle.base import Base, base_of
 from tests.oracle.bodies import (
     Bodies,
     LinkMotion,
@@ -38,7 +39,7 @@ from tests.oracle.coordinates import (
     task_size,
     twist_basis,
 )
-from tests.oracle.effects import friction, rotors, springs, stored
+from tests.oracle.effects import friction, rotors, springs, stored, turning_friction
 from tests.oracle.forces import RANK_TOLERANCE, completion, forces
 from tests.oracle.jets import Array, Jet
 
@@ -140,7 +141,11 @@ class _LegKinematics:
 
 @dataclass(frozen=True)
 class _Motion:
-    """The whole mechanism at one acceleration; `remainders`: see `_joint_acceleration`."""
+    """The whole mechanism at one acceleration; `remainders`: see `_joint_acceleration`.
+
+    `dragged`: by leg, the moment (3,) of the platform joint's friction on the last link.
+    `in_space`: of the links, with the base.
+    """
 
     qd: Array
     qdd: Array
@@ -151,6 +156,9 @@ class _Motion:
     kinetic: float
     potential: float
     dissipation: float
+    dragged: list[Array]
+    in_space: list[LinkMotion]
+    gravity: Array
 
 
 def project(
@@ -160,6 +168,7 @@ def project(
     V: Array,
     A: Array | None = None,
     wrench: Array | None = None,
+    base: Base | None = None,
 ) -> Result:
     """Evaluate the dynamics at a closed state.
 
@@ -170,6 +179,7 @@ def project(
         V: (nv,) velocity.
         A: (nv,) acceleration, default zero.
         wrench: (nw,) external force and moment about the platform origin, default none.
+        base: its motion, by default that of `base_of`.
 
     Returns:
         The matrices and all derived quantities.
@@ -179,13 +189,14 @@ def project(
     """
     X, q, V = (np.asarray(array, dtype=float) for array in (X, q, V))
     A = np.zeros_like(V) if A is None else np.asarray(A, dtype=float)
+    base = base or base_of(manipulator)
     legs = [
         _leg_kinematics(manipulator, number, X, q[where])
         for number, where in enumerate(joint_slices(manipulator))
     ]
     platform = _platform_bodies(manipulator, X, V.size)
-    still = _evaluate(manipulator, legs, platform, X, V, np.zeros_like(V))
-    moving = _evaluate(manipulator, legs, platform, X, V, A)
+    still = _evaluate(manipulator, legs, platform, X, V, np.zeros_like(V), base)
+    moving = _evaluate(manipulator, legs, platform, X, V, A, base)
     H = np.vstack([leg.rates for leg in legs]).T[:, actuated_indices(manipulator)]
     Hk = np.hstack([-leg.demand.T @ leg.multipliers for leg in legs])
     load = np.zeros_like(V)
@@ -361,17 +372,20 @@ def _evaluate(
     X: Array,
     V: Array,
     A: Array,
+    base: Base,
 ) -> _Motion:
     """Accelerations of all bodies and the generalised inertia-minus-gravity forces."""
-    gravity = np.array(manipulator.gravity, dtype=float)
+    gravity = base.rotation.T @ np.array(manipulator.gravity, dtype=float)
     basis = twist_basis(manipulator.space) @ np.eye(task_size(manipulator.space), V.size)
     pose = platform_motion(manipulator, X, basis @ V, basis @ A)
-    qd, qdd, links, remainders = [], [], [], []
+    qd, qdd, links, remainders, carried_links = [], [], [], [], []
     for leg in legs:
         rate = leg.rates @ V
         acceleration, remainder = _joint_acceleration(manipulator, leg, pose, rate, A)
         poses = chain_poses(leg.leg, Jet(leg.q, rate, acceleration))
-        links.append(motion_of([joint.link for joint in leg.leg.joints], poses))
+        bodies_of_leg = [joint.link for joint in leg.leg.joints]
+        links.append(motion_of(bodies_of_leg, poses))
+        carried_links.append(motion_of(bodies_of_leg, [base.carries(each) for each in poses]))
         qd.append(rate)
         qdd.append(acceleration)
         remainders.append(remainder)
@@ -379,21 +393,49 @@ def _evaluate(
     carried = motion_of(fixed, [pose] * len(fixed))
     bodies = [leg.bodies.by(leg.rates) for leg in legs]
     pairs = list(zip([*bodies, platform], [*links, carried], strict=True))
+    in_space = [*carried_links, motion_of(fixed, [base.carries(pose)] * len(fixed))]
     triples = list(zip(legs, qd, qdd, strict=True))
+    turning = [carried.angular_velocity[0] - motion.angular_velocity[-1] for motion in links]
+    dragged = [
+        turning_friction(leg.leg.platform_joint.friction, of)
+        for leg, of in zip(legs, turning, strict=True)
+    ]
     return _Motion(
         qd=np.concatenate(qd),
         qdd=np.concatenate(qdd),
         links=links,
         platform=only_body(motion_of([manipulator.platform], [pose])),
-        forces=np.sum([virtual_forces(*pair, gravity) for pair in pairs], axis=0)
-        + np.sum([leg.rates.T @ _in_joints(leg, *rates) for leg, *rates in triples], axis=0),
+        forces=np.sum(
+            [
+                virtual_forces(body, motion, gravity)
+                for body, motion in zip([*bodies, platform], in_space, strict=True)
+            ],
+            axis=0,
+        )
+        + np.sum([leg.rates.T @ _in_joints(leg, *rates) for leg, *rates in triples], axis=0)
+        + np.sum(
+            [
+                leg.rates.T @ _against(leg, moment) + platform.angle_partials[0].T @ moment
+                for leg, moment in zip(legs, dragged, strict=True)
+            ],
+            axis=0,
+        ),
         remainders=remainders,
         kinetic=sum(kinetic_energy(*pair) for pair in pairs)
         + sum(0.5 * float(rotors(leg.leg.joints) @ rate**2) for leg, rate, _ in triples),
         potential=sum(potential_energy(*pair, gravity) for pair in pairs)
         + sum(stored(leg.leg.joints, leg.q) for leg in legs),
-        dissipation=sum(float(friction(leg.leg.joints, rate) @ rate) for leg, rate, _ in triples),
+        dissipation=sum(float(friction(leg.leg.joints, rate) @ rate) for leg, rate, _ in triples)
+        + sum(float(moment @ of) for moment, of in zip(dragged, turning, strict=True)),
+        dragged=dragged,
+        in_space=carried_links,
+        gravity=gravity,
     )
+
+
+def _against(leg: _LegKinematics, moment: Array) -> Array:
+    """(m,) forces along the joints that a moment on the last link spares."""
+    return np.asarray(-leg.bodies.angle_partials[-1].T @ moment)
 
 
 def _in_joints(leg: _LegKinematics, rate: Array, acceleration: Array) -> Array:
@@ -429,15 +471,17 @@ def _leg_results(
     tau: Array,
     lam: Array,
 ) -> tuple[LegResult, ...]:
-    gravity = np.array(manipulator.gravity, dtype=float)
     drives = np.zeros(moving.qd.size)
     drives[actuated_indices(manipulator)] = tau
     results, first = [], 0
-    for leg, motion, where in zip(legs, moving.links, joint_slices(manipulator), strict=True):
+    parts = zip(
+        legs, moving.links, moving.in_space, joint_slices(manipulator), moving.dragged, strict=True
+    )
+    for leg, motion, in_space, where, moment in parts:
         own = slice(first, first + leg.multipliers.shape[1])
         first = own.stop
-        forces = virtual_forces(leg.bodies, motion, gravity)
-        forces += _in_joints(leg, moving.qd[where], moving.qdd[where])
+        forces = virtual_forces(leg.bodies, in_space, moving.gravity)
+        forces += _in_joints(leg, moving.qd[where], moving.qdd[where]) + _against(leg, moment)
         # Virtual power of joint j: reaction . v_j = tau_j - Gamma_j.
         power = (drives[where] - forces)[leg.free]
         reaction = np.linalg.pinv(leg.jacobian[:, leg.free].T) @ power
@@ -448,7 +492,8 @@ def _leg_results(
                 rates=leg.rates,
                 joint_forces=forces,
                 joint_inertia=inertia_matrix(leg.bodies) + np.diag(rotors(leg.leg.joints)),
-                reaction=leg.wrench_map @ (reaction + leg.multipliers @ lam[own]),
+                reaction=leg.wrench_map @ (reaction + leg.multipliers @ lam[own])
+                - np.concatenate((np.zeros(3), moment)),
                 constraint_wrenches=(leg.wrench_map @ leg.multipliers).T,
             )
         )

@@ -124,6 +124,10 @@ class _LegPlan:
     at_origin: bool = False
 
 
+MOVING = 0.2
+"""Of so many mechanisms the base moves."""
+
+
 def draw(seed: int, *, light: bool = False, anywhere: bool = True) -> Manipulator:
     """The mechanism of a seed.
 
@@ -134,6 +138,8 @@ def draw(seed: int, *, light: bool = False, anywhere: bool = True) -> Manipulato
             drives anywhere, in any number; False: as many as freedoms, or one or two more or less.
     """
     found = _structured(seed, light=light, anywhere=anywhere)
+    moves = bool(np.random.default_rng([seed, 5]).random() < MOVING)
+    found = replace(found, moving_base=moves)
     return with_effects(found, np.random.default_rng([seed, 4]))
 
 

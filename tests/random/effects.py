@@ -1,4 +1,4 @@
-"""Friction, springs and motors of drawn mechanisms: which by leg type, values by leg."""
+"""Friction, springs, motors, limits of drawn mechanisms: which by leg type, values by leg."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from pne_sym.model.effects import Actuator, Friction, Spring
-from pne_sym.model.manipulator import Body, Joint, Leg, Manipulator, Space
+from pne_sym.model.effects import Actuator, Friction, Limits, Spring
+from pne_sym.model.manipulator import Body, Joint, Leg, Manipulator, PlatformJoint, Space
 from tests.oracle.coordinates import is_planar
 from tests.oracle.randomisation import random_inertia, vector3
 
@@ -35,8 +35,20 @@ def with_effects(
     for leg in manipulator.legs:
         plan = plans.setdefault(_structure(leg), [_kinds(rng, likely) for _ in leg.joints])
         joints = [_dressed(j, kinds, rng) for j, kinds in zip(leg.joints, plan, strict=True)]
-        legs.append(replace(leg, joints=tuple(joints)))
+        legs.append(
+            replace(
+                leg,
+                joints=tuple(joints),
+                platform_joint=_rubbing(leg, joints[0], manipulator.space),
+            )
+        )
     return replace(manipulator, legs=tuple(legs))
+
+
+def _rubbing(leg: Leg, first: Joint, space: Space) -> PlatformJoint:
+    """The platform joint with the friction of the first joint, if it turns."""
+    turns = space is not Space.POINT and len(leg.platform_joint.kind.right_angles) < 3
+    return replace(leg.platform_joint, friction=first.friction if turns else None)
 
 
 def _structure(leg: Leg) -> object:
@@ -63,4 +75,5 @@ def _dressed(joint: Joint, kinds: str, rng: np.random.Generator) -> Joint:
         actuator=Actuator(float(1e-4 * inertia), float(ratio))
         if "m" in kinds and joint.actuated
         else None,
+        limits=Limits((-20.0 * float(viscous), 20.0 * float(scale))) if "s" in kinds else None,
     )

@@ -24,6 +24,7 @@ from pne_sym.model.manipulator import JointKind, Manipulator, Space
 from pne_sym.model.reader import checked
 from pne_sym.pipeline import compile_bundle
 from tests.backends.c_library import QUICK, CLibrary
+from tests.oracle.base import Carried, base_of
 from tests.oracle.closure import OracleError
 from tests.oracle.comparison import relative_error
 from tests.oracle.coordinates import (
@@ -116,7 +117,7 @@ def _module(bundle: Bundle) -> Any:
     source = NumpyBackend().emit(bundle)[f"{bundle.name}.py"]
     made = ModuleType(bundle.name)
     exec(compile(source, f"<{bundle.name}.py>", "exec"), made.__dict__)
-    return made
+    return Carried(made, base_of(bundle.manipulator)) if bundle.manipulator.moving_base else made
 
 
 def _at_home(manipulator: Manipulator, rng: np.random.Generator, X: Array, q: Array) -> State:
@@ -311,6 +312,7 @@ def _judge_c(bundle: Bundle, module: Any, verdict: Verdict, states: list[State])
             tau = np.random.default_rng(1).uniform(-20.0, 20.0, module.NU)
             weights = np.linspace(1.0, 2.0, module.NU)
             arguments = {**state._asdict(), "tau": tau, "q0": state.q, "weights": weights}
+            arguments["base"] = base_of(bundle.manipulator).flat
             guess = {"q0": state.q} if verdict.iterated else {}
             for name, call in _C_FUNCTIONS.items():
                 if name not in library.api:

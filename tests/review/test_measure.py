@@ -47,3 +47,14 @@ def test_rounding_of_large_terms_is_none() -> None:
     found = gap_between(before, after, floor=0.01)
     assert found is not None
     assert found.size == pytest.approx(0.5)
+
+
+def test_infinite_on_both_sides() -> None:
+    before, after = np.array([[np.inf, 1.0]]), np.array([[np.inf, 1.5]])
+    assert gap_between(before, before.copy()) is None
+    found = gap_between(before, after)
+    assert found is not None
+    assert (found.where, found.size) == ("[1]", pytest.approx(1 / 3))
+    found = gap_between(before, np.array([[-np.inf, 1.0]]))
+    assert found is not None
+    assert found.size == np.inf

@@ -14,6 +14,8 @@ from pne_sym.model.manipulator import Manipulator
 from tests import models
 
 STATES = 3
+SWAYING = np.array([0.8, -0.6, 0.0, 0.6, 0.8, 0.0, 0.0, 0.0, 1.0, *np.linspace(-1.0, 2.0, 9)])
+"""A motion of the base, turned about z."""
 _SOLVED = {
     "inverse_dynamics": "H",
     "leg_reactions": "H",
@@ -58,6 +60,7 @@ def vectors(m: Any, states: int = STATES) -> dict[str, Any]:
         "step": rng.uniform(-0.5, 0.5, (states, m.NV)),
         "s": rng.uniform(0.0, 1.0, states),
         "rpy": rng.uniform(-1.0, 1.0, (states, 3)),
+        "base": np.tile(SWAYING, (states, 1)),
     }
     if hasattr(m, "rotation"):
         found["R"] = m.rotation(X)

@@ -12,8 +12,12 @@ import pytest
 import torch
 
 from pne_sym import manipulators
+from pne_sym.model.manipulator import Manipulator
 from tests import models
+from tests.infinite import finite_parts
 from tests.targets.modules import call, condition, functions, vectors, xp_module
+from tests.whole.test_joint_forces import dressed
+from tests.whole.test_moving_base import carried
 
 jax.config.update("jax_enable_x64", True)
 _SAMPLE = ("stewart", "stewart_7ups", "planar_redundant", "tripod_3prs", "hexapod_6x6r")
@@ -23,7 +27,16 @@ _SAMPLED = [(space, name) for space in (torch, jax.numpy) for name in _SAMPLE]
 
 @pytest.mark.parametrize(("space", "name"), [*_EVERY, *_SAMPLED])
 def test_equal_to_the_numpy_module(space: Any, name: str) -> None:
-    manipulator = models.catalogue(name)
+    assert_alike(space, models.catalogue(name))
+
+
+def test_with_all_that_a_joint_can_have() -> None:
+    """Friction, springs, motors, limits; a payload; a base that moves."""
+    assert_alike(np, dressed("planar_3rpr"))
+    assert_alike(np, carried("tripod_3rps"))
+
+
+def assert_alike(space: Any, manipulator: Manipulator) -> None:
     m, x = models.module(manipulator), xp_module(manipulator)
     given = vectors(m)
     assert len(functions(x)) >= 10
@@ -35,6 +48,7 @@ def test_equal_to_the_numpy_module(space: Any, name: str) -> None:
             if function == "null_space":
                 found, wanted = (basis @ np.swapaxes(basis, -1, -2) for basis in (found, b))
             assert found.shape == wanted.shape, function
+            found, wanted = finite_parts(found, wanted)
             np.testing.assert_array_equal(np.isnan(found), np.isnan(wanted), function)
             error = np.nanmax(np.abs(found - wanted), initial=0.0)
             scale = np.nanmax(np.abs(wanted), initial=0.0) or 1.0

@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 
 from pne_sym.model.manipulator import Manipulator
 from tests.models import catalogue, live_parameters, module, same_branch_spec, state_at
+from tests.oracle.base import Carried, base_of
 from tests.oracle.comparison import relative_error
+from tests.oracle.effects import margins
 from tests.oracle.projection import Result, project
 from tests.oracle.specs import State
 
@@ -69,7 +71,7 @@ def at(name: str, spec: Manipulator, state: State) -> Case:
 
 def own(spec: Manipulator, state: State) -> Case:
     """The model generated from a specification, with its defaults."""
-    model = module(spec)
+    model = Carried(module(spec), base_of(spec)) if spec.moving_base else module(spec)
     guess = guess_of(model, state.q)
     return Case(model, model.Parameters(), spec, state, project(spec, *state), guess)
 
@@ -93,6 +95,9 @@ def answers(c: Case) -> dict[str, Any]:
         "reactions": m.leg_reactions(s.X, s.V, s.A, p, wrench=s.wrench, **guess),
         "A": _split(m.forward_dynamics(s.X, s.V, c.oracle.tau, p, wrench=s.wrench, **guess), m)[0],
     }
+    if _limited(c):
+        found["margins"] = m.joint_margins(s.X, p, **guess)[_limited(c)]
+        found["within limits"] = m.within_limits(s.X, p, **guess)
     if m.NC:
         Hk = m.Hk(s.X, p, **guess)
         found["constraint forces"] = _by_leg(c, Hk, lam)
@@ -118,11 +123,23 @@ def expected(c: Case) -> dict[str, Any]:
         "reactions": reactions[:, : _reaction_size(c)],
         "A": c.state.A,
     }
+    if _limited(c):
+        found["margins"] = _margins(c)[_limited(c)]
+        found["within limits"] = np.array(float((_margins(c) >= 0.0).all()))
     if c.model.NC:
         found["constraint forces"] = _by_leg(c, o.Hk, o.lam)
         found["constraints"] = np.zeros(c.model.NC)
         found["constraint drift"] = np.zeros(c.model.NC)
     return found
+
+
+def _margins(c: Case) -> Array:
+    return margins([joint for leg in c.spec.legs for joint in leg.joints], c.state.q)
+
+
+def _limited(c: Case) -> list[int]:
+    """Joints with limits of displacement."""
+    return [int(k) for k in np.flatnonzero(np.isfinite(_margins(c)))]
 
 
 def _by_leg(c: Case, Hk: Array, lam: Array) -> Array:

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from pne_sym.model.effects import Actuator, Friction
+from pne_sym.model.effects import Actuator, Friction, Limits
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.model.reader import checked
-from tests.models import catalogue, module
+from tests.backends.c_library import CLibrary
+from tests.models import bundle, catalogue, module, state_at
 from tests.oracle.comparison import relative_error
 from tests.oracle.coordinates import (
     actuated_indices,
@@ -19,9 +21,10 @@ from tests.oracle.coordinates import (
     rotation_from_quaternion,
     step_between,
 )
+from tests.oracle.effects import margins
 from tests.sampling import SAMPLE, entries, sampled
 from tests.whole.calls import states
-from tests.whole.cases import case
+from tests.whole.cases import assert_right, case, own
 
 NAMES = sampled(SAMPLE, 4)
 
@@ -98,6 +101,61 @@ def test_dissipation() -> None:
     many = m.dissipation(X, np.random.default_rng(0).normal(size=(50, 3)))
     assert many.shape == (50,)
     assert (many > 0.0).all()
+
+
+@pytest.mark.parametrize("name", ["planar_3rpr", "hybrid_3rrrs_redundant"])
+def test_margins(name: str) -> None:
+    """Of hinges, slides and extra coordinates, some beyond their limits."""
+    plain = catalogue(name)
+    home, legs = iter(plain.home.q), []
+    for i, leg in enumerate(plain.legs):
+        joints = []
+        for k, joint in enumerate(leg.joints):
+            middle = next(home)
+            between = (middle + 0.5, middle + 0.9) if i == 0 else (middle - 0.4, middle + 1.0)
+            joints.append(replace(joint, limits=Limits(between) if k else None))
+        legs.append(replace(leg, joints=tuple(joints)))
+    spec = replace(plain, legs=tuple(legs))
+    c = own(spec, state_at(spec, 3))
+    assert_right(c)
+    m, wanted = c.model, margins([joint for leg in legs for joint in leg.joints], c.state.q)
+    X = np.array([c.state.X, np.full(m.NQ, np.nan), *[c.state.X] * 10])
+    found = m.joint_margins(X)
+    np.testing.assert_allclose(found[0], wanted, rtol=0, atol=1e-9)
+    assert (found[0] < 0.0).any()
+    assert np.isnan(found[1]).all()
+    np.testing.assert_array_equal(found[2:], np.broadcast_to(found[0], (10, m.NJ)))
+    np.testing.assert_array_equal(m.within_limits(X), [0.0, np.nan, *[0.0] * 10])
+    names = [n for n in vars(m.Parameters()) if n.endswith("_limits")]
+    wide = {n: np.add(getattr(m.Parameters(), n), [-9.0, 9.0]) for n in names}
+    assert m.within_limits(c.state.X, m.Parameters().replace(**wide)) == 1.0
+
+
+def test_without_limits() -> None:
+    m = module(catalogue("planar_3rpr"))
+    assert (m.joint_margins(m.HOME_X) == np.inf).all()
+    assert m.within_limits(m.HOME_X) == 1.0
+    assert np.isnan(m.joint_margins(0.0 * m.HOME_X + np.nan)).all()
+    assert np.isnan(m.within_limits(0.0 * m.HOME_X + 1e200))
+
+
+def test_margins_in_c(tmp_path: Path) -> None:
+    slide = Limits((0.1, 0.63))
+    plain, legs = catalogue("planar_3rpr"), []
+    for leg in plain.legs:
+        legs.append(replace(leg, joints=(leg.joints[0], replace(leg.joints[1], limits=slide))))
+    spec = checked(replace(plain, legs=tuple(legs)))
+    m, library = module(spec), CLibrary(bundle(spec), tmp_path, flags=("-O0",))
+    X = np.array(m.HOME_X) + np.array([[0.0, 0.0, 0.0], [0.1, 0.0, 0.0], [np.nan, 0.0, 0.0]])
+    for name in ("joint_margins", "within_limits"):
+        wanted = getattr(m, name)(X)
+        (found,), status = library.batch(name, X)
+        np.testing.assert_allclose(found.reshape(wanted.shape), wanted, atol=1e-13)
+        np.testing.assert_array_equal(status, [0, 0, 3])
+        (alone,), _ = library.single(name, X[1])
+        np.testing.assert_array_equal(alone, found[1])
+    assert library.single("within_limits", X[0])[0] == [1.0]
+    assert library.single("within_limits", X[1])[0] == [0.0]
 
 
 @pytest.mark.parametrize("name", entries(2))

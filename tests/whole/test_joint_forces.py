@@ -63,6 +63,22 @@ def test_every_answer(name: str) -> None:
     assert_right(own(spec, state_at(spec, 3)))
 
 
+@pytest.mark.parametrize("name", ["planar_3rpr", "tripod_3rps"])
+def test_friction_of_platform_joints(name: str) -> None:
+    """A moment against the relative turning, in leg reactions too."""
+    plain, law = catalogue(name), Friction(2.0, 3.0, 0.1)
+    legs = [
+        replace(leg, platform_joint=replace(leg.platform_joint, friction=law)) for leg in plain.legs
+    ]
+    spec = checked(replace(plain, legs=tuple(legs)))
+    c = own(spec, state_at(spec, 3))
+    assert_right(c)
+    m, base, s = c.model, module(plain), c.state
+    taken = (m.Z(s.X, s.V) - base.Z(s.X, s.V)) @ s.V
+    assert m.dissipation(s.X, s.V) == pytest.approx(taken, rel=1e-9)
+    assert taken == pytest.approx(c.oracle.dissipation, rel=1e-9)
+
+
 @pytest.mark.parametrize("name", sampled(NAMES[:4], 0, keep=NAMES[:2]))
 def test_every_number_is_live(name: str) -> None:
     """A model with the parameters of another specification answers as that one."""

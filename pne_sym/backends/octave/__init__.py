@@ -54,8 +54,7 @@ class OctaveBackend:
         call = re.compile(rf"\b{bundle.name}\.internal\.(\w+)\(")
         needed = reached(users.values(), own, call.findall)
         files = {"Contents": contents} | users | {f"+internal/{n}": own[n] for n in needed}
-        folder = f"octave/+{bundle.name}"
-        return {f"{folder}/{place}.m": text for place, text in sorted(files.items())}
+        return {f"octave/+{bundle.name}/{place}.m": text for place, text in sorted(files.items())}
 
 
 def _files(bundle: Bundle, text: str) -> dict[str, str]:
@@ -80,7 +79,6 @@ def _continued(text: str) -> str:
 def _facts(bundle: Bundle) -> dict[str, object]:
     """What the templates print."""
     program, code, public = bundle.program, Code(bundle), Public(bundle)
-    c = bundle.coordinates
     searches = {s.residual: s for f in program.public for s in f.steps if isinstance(s, Search)}
     return {
         "d": describe(bundle),
@@ -89,8 +87,8 @@ def _facts(bundle: Bundle) -> dict[str, object]:
         "fields": field_views(bundle),
         "dimensions": _dimensions,
         "default": _default,
-        "actuated": column([c.joints.index(joint) + 1 for joint in c.actuators]),
-        "home": [column(values) for values in c.home],
+        "actuated": column([place + 1 for place in describe(bundle).actuated]),
+        "home": [column(values) for values in bundle.coordinates.home],
         "exported": [public.exported(f) for f in program.public if f.is_exported],
         "meanings": {f.name: f.meaning for f in program.public if f.is_exported},
         "steps": [(f, inputs_read(program, f), public.lines(f)) for f in program.public],

@@ -31,6 +31,8 @@ EXPRESSIONS = {
     "reshape({1}, [1, 1, n])",
     "clear_at": "{0}; {targets}({numbers}, :) = 0",
     "add_at": "{0}; {targets}({numbers}, :) = {targets}({numbers}, :) + {1}",
+    "unlimited": "{0}; {targets}({numbers}, :) = {targets}({numbers}, :) + Inf",
+    "not_negative": "all({0} >= 0, 1) + 0 * sum({0}, 1)",
     "wrap_turns": "{0}; {targets}({numbers}, :) = pi - mod(pi - {targets}({numbers}, :), 2.0 * pi)",
     "saddle": "cat(1, cat(2, {0}, -{1}), cat(2, permute({1}, [2, 1, 3]), "
     "zeros(size({1}, 2), size({1}, 2), n)))",
@@ -88,8 +90,8 @@ class Public(StepText):
         given = f"'{a.name}', {a.name}"
         if a.default is None:
             return f"{self.internal}argument({given}, {list(_core(a))}, n)"
-        home = a.default is Default.HOME_Q
-        default = self.home_q if home else f"{a.default}({a.value.size}, 1)"
+        known = {Default.HOME_Q: self.home_q, Default.REST: "[reshape(eye(3), 9, 1); zeros(9, 1)]"}
+        default = known.get(a.default, f"{a.default}({a.value.size}, 1)")
         return f"{self.internal}optional({given}, {default}, {str(a.positive).lower()}, n)"
 
 

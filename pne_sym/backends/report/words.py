@@ -26,6 +26,9 @@ LAWS: dict[Law, str] = {
     "smooth near rest. It takes power from every joint that has it.",
     Law.SPRING: "Hooke: the force is proportional to the displacement from that at rest.",
     Law.ROTOR: "A rotor geared to its joint: its inertia counts with the square of the ratio.",
+    Law.MOVING_FRAME: "Relative to a base that turns, bodies have Coriolis's, Euler's and "
+    "centrifugal acceleration besides.",
+    Law.LIMIT: "How far a joint may go; nothing acts on it there.",
     Law.ENERGY: "Work of the weight.",
     Law.LUMPING: "A value made of parameters alone, computed once when they are set.",
 }
@@ -132,6 +135,7 @@ FUNCTIONS = {
     "potential": "potential energy",
     "dissipation": "power that friction takes",
     "motors": "rates of the motors, and the inverses of their ratios",
+    "joint_margins": "distances of the joints from their limits",
     "condition": "H and the least pivots, for the conditioning",
 }
 SPACES = {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.describe import describe, field_views
-from pne_sym.backends.python_public import definition
+from pne_sym.backends.python_public import FILL, definition, taken
 from pne_sym.backends.steps import COMMON
 from pne_sym.backends.templating import defined, render
 from pne_sym.backends.xp.printers import PRINTER, Code, Steps
@@ -21,7 +21,7 @@ class XpBackend:
 
     def emit(self, bundle: Bundle) -> dict[str, str]:
         """File name -> text."""
-        program, c = bundle.program, bundle.coordinates
+        program = bundle.program
         public = [renamed(f, {"s": "s_given"}) for f in program.public]  # s is the state
         code, steps = Code(bundle, PRINTER), Steps(program)
         facts = {
@@ -30,7 +30,6 @@ class XpBackend:
             "program": program,
             "prepare": code.prepared(),
             "functions": [(f, code.body(f)) for f in program.functions.values()],
-            "actuated": tuple(map(c.joints.index, c.actuators)),
             "steps": [(f, steps.lines(f)) for f in public],
             "exported": {f.name: _public(f) for f in program.public if f.is_exported},
         }
@@ -39,11 +38,11 @@ class XpBackend:
 
 def _public(function: PublicFunction) -> str:
     """A function that users call."""
-    fill = {Default.ZEROS: "(0.0,) * {}", Default.ONES: "(1.0,) * {}", Default.HOME_Q: "HOME_Q"}
     body = ["arguments = {  # with shape and default"]
     for a in function.inputs:
-        default = fill[a.default].format(a.value.size) if a.default else None
-        body.append(f'    "{a.name}": ({a.name}, {a.value.shape}, {default}),')
-    p = "p" if function.needs_model else "None"
-    body += ["}", f"return _call(_steps_{function.name}, {p}, arguments)"]
+        numbers = a.default in (Default.ZEROS, Default.ONES)
+        default = f"({FILL[a.default]},) * {a.value.size}" if numbers else FILL[a.default]
+        body.append(f'    "{a.name}": ({taken(a)}, {a.value.shape}, {default}),')
+    p, more = "p" if function.needs_model else "None", ", unbounded=True" * function.unbounded
+    body += ["}", f"return _call(_steps_{function.name}, {p}, arguments{more})"]
     return definition(function, body, plain=True)

@@ -1,0 +1,93 @@
+"""How far the joints of a leg are from their limits of displacement.
+
+Of a hinge that is no extra coordinate a full turn changes nothing: the displacement counts that is
+nearest to the middle of the range.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import sympy as sp
+
+from pne_sym.derivation import Book, Output, ParameterField, Quantity
+from pne_sym.mechanics.leg_geometry import LegGeometry
+from pne_sym.mechanics.terms import Writer, glossary
+from pne_sym.model.manipulator import Leg
+
+_TERMS = glossary(r"""
+middle_#   | q^m_{#}          | LUMPING constant
+    middle of the range of joint #
+half_#     | \varrho_{#}      | LUMPING constant
+    half the range of joint #
+off_#      | e_{#}            | LIMIT | beyond the paper
+    displacement of joint # from the middle of its range
+off2_#     | \varsigma_{#}    | LIMIT | beyond the paper
+    square of that displacement of joint #
+margin_#   | \chi_{#}         | LIMIT | beyond the paper
+    distance of joint # from the nearer limit
+""")
+_TEXT = (
+    "How far a joint is from the nearer of its limits, negative beyond it. Limits do not act on "
+    "the joint."
+)
+_HINGES = " Full turns of a hinge do not count."
+
+
+def write_margins(book: Book, g: LegGeometry, q: Mapping[int, Any], starts: Sequence[int]) -> None:
+    """The chapter on the limits of a leg's joints, where there are any.
+
+    Args:
+        book: of the derivation.
+        g: of the leg.
+        q: displacements by joint.
+        starts: where the joints of each leg begin in q.
+    """
+    limited = [j for j, joint in enumerate(g.leg_type.model.joints, 1) if joint.has_stroke]
+    if not limited:
+        return
+    wraps = {j: g.kind(j).is_hinge and not g.is_extra(j) for j in limited}
+    title = f"Limits of a {g.leg_type.architecture} leg"
+    text = _TEXT + _HINGES * any(wraps.values())
+    book.chapter(f"{g.leg_type.name}-L", title, text, g.leg_type.name)
+    write = Writer(book, g, _TERMS)
+    for j in limited:
+        least, largest = _limits(book, g, j)
+        middle = write("middle_#", (least + largest) / 2, j)
+        half = write("half_#", (largest - least) / 2, j)
+        off = q[j] - middle
+        off = sp.atan2(sp.sin(off), sp.cos(off)) if wraps[j] else off
+        off = write("off_#", off, j)
+        margin = write("margin_#", half - sp.sqrt(write("off2_#", off**2, j)), j)
+        rows = tuple(starts[i] + j - 1 for i in g.leg_type.indices)
+        book.outputs.append(Output("margins", margin, ((0, 0),), (), g.leg_type.name, rows))
+
+
+def _limits(book: Book, g: LegGeometry, j: int) -> tuple[Any, ...]:
+    """The live parameters of joint j: its least and its largest displacement."""
+    legs = g.leg_type
+
+    def pick(leg: Leg) -> tuple[float, float]:
+        limits = leg.joints[j - 1].limits
+        assert limits is not None
+        assert limits.displacement is not None
+        return limits.displacement
+
+    unit = g.kind(j).unit
+    symbols = book.parameters.add(
+        ParameterField(
+            f"{legs.name}_joint{j}_limits",
+            legs.name,
+            (2,),
+            unit,
+            f"least and largest displacement of joint {j}",
+            tuple(f"legs[{i}].joints[{j - 1}].limits.displacement" for i in legs.indices),
+            np.asarray(legs.over_legs(pick)),
+        )
+    )
+    for symbol, mark, word in zip(symbols, "-+", ("least", "largest"), strict=True):
+        latex, meaning = f"q^{mark}_{{{j}}}", f"{word} displacement of joint {j}"
+        book.note_quantity(Quantity(str(symbol), latex, meaning, parameter=True))
+    return symbols

@@ -1,0 +1,135 @@
+"""A base that moves: what its turning and its acceleration add, in base axes.
+
+Pose, velocity and acceleration of the platform stay those relative to the base; so do all joints.
+Accelerations in Newton's and Euler's equations are absolute ones.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import sympy as sp
+
+from pne_sym.derivation import Book, Law, Quantity, Role
+from pne_sym.mechanics.platform_motion import BaseMotion, PlatformMotion
+from pne_sym.vector import (
+    Compose,
+    Cross,
+    Skew,
+    TensorSymbol,
+    Transpose,
+    Vector,
+    VectorSymbol,
+    ZeroVector,
+    vector_sum,
+)
+
+_TEXT = (
+    r"The base turns and accelerates; $`\mathbf R_b`$ turns its axes into those of the world, in "
+    r"which gravity is given. What is relative to the base stays as it is; a point at "
+    r"$`\mathbf r`$ has the acceleration $`\mathbf a_b+\mathbf B_b\,\mathbf r+2\,"
+    r"\boldsymbol\omega_b\times\dot{\mathbf r}`$ besides, of which $`\mathbf a_b`$ acts as gravity "
+    r"does."
+)
+_REFERENCE = "beyond the paper"
+
+
+def introduce_base(book: Book, gravity: Vector, *, planar: bool) -> BaseMotion:
+    """The chapter on the motion of the base, which is given.
+
+    Args:
+        book: of the derivation.
+        gravity: in world axes.
+        planar: the base stays in the plane.
+    """
+    rotation = _rotation(book, planar=planar)
+
+    def given(stem: str, latex: str, role: Role, unit: str, active: str) -> Vector:
+        components = [
+            sp.Symbol(f"{stem}_{axis}", real=True) if axis in active else sp.S.Zero
+            for axis in "xyz"
+        ]
+        quantity = Quantity(stem, latex, role.value, unit, "base", role=role)
+        symbol: Vector = book.give(VectorSymbol(stem), "base", components, quantity)
+        return symbol
+
+    turns, moves = ("z", "xy") if planar else ("xyz", "xyz")
+    omega = given("omega_b", r"\boldsymbol\omega_b", Role.BASE_ANGULAR_VELOCITY, "rad/s", turns)
+    alpha = given(
+        "alpha_b", r"\boldsymbol\alpha_b", Role.BASE_ANGULAR_ACCELERATION, "rad/s^2", turns
+    )
+    a = given("a_b", r"\mathbf a_b", Role.BASE_ACCELERATION, "m/s^2", moves)
+    book.chapter("B", "Motion of the base", _TEXT)
+
+    def define(name: str, rhs: Any, latex: str, title: str) -> Any:
+        law = Law.MOVING_FRAME
+        return book.define(name, rhs, latex, title, law, body="base", reference=_REFERENCE)
+
+    spin = Compose(Skew(omega), Skew(omega))
+    tensor = define("B_b", Skew(alpha) + spin, r"\mathbf B_b", "acceleration tensor of the base")
+    turned = Transpose(rotation) @ gravity
+    weight = define("g_b", turned, r"\mathbf g_b", "acceleration of gravity, base axes")
+    title = "gravity less the acceleration of the base origin"
+    felt = define("g_f", weight - a, r"\mathbf g_f", title)
+    return BaseMotion(omega, alpha, tensor, weight, felt)
+
+
+def _rotation(book: Book, *, planar: bool) -> Any:
+    names = [[sp.Symbol(f"R_b_{a}{b}", real=True) for b in "xyz"] for a in "xyz"]
+    entries = [entry for row in names for entry in row]
+    if planar:
+        (xx, xy, _), (yx, yy, _), _ = names
+        zero, one = sp.S.Zero, sp.S.One
+        entries = [xx, xy, zero, yx, yy, zero, zero, zero, one]
+    role = Role.BASE_ROTATION
+    quantity = Quantity("R_b", r"\mathbf R_b", role.value, "-", "base", role=role)
+    return book.give(TensorSymbol("R_b"), "base", entries, quantity)
+
+
+def carried_platform(
+    book: Book, p: PlatformMotion, mass: Any, h: Vector, J: Any
+) -> tuple[Vector, Vector]:
+    """Inertia force, and moment about its origin, of the platform from the motion of its base.
+
+    Args:
+        book: of the derivation.
+        p: motion of the platform.
+        mass: of the platform.
+        h: its first moment.
+        J: its inertia tensor about its origin.
+    """
+    base = p.base
+    if base is None:
+        return ZeroVector, ZeroVector
+    w, alpha = base.omega, base.alpha
+
+    def define(name: str, rhs: Any, latex: str, title: str, *forms: Any) -> Any:
+        frame = "platform" if name == "mu_b" else "base"
+        return book.define(
+            name, rhs, latex, title, Law.MOVING_FRAME, body=frame, forms=forms,
+            reference=_REFERENCE,
+        )  # fmt: skip
+
+    moved = define(
+        "a_m",
+        vector_sum((Cross(alpha, p.t), Cross(w, Cross(w, p.t)), Cross(w, p.t_dot) * 2)),
+        r"\mathbf a_m",
+        "acceleration of the platform origin from the turning of the base",
+        vector_sum((base.tensor @ p.t, Cross(w, p.t_dot) * 2)),
+    )
+    coriolis = Cross(w, Cross(p.omega, h)) * 2
+    force = define(
+        "f_b",
+        vector_sum((mass * moved, Cross(alpha, h), Cross(w, Cross(w, h)), coriolis)),
+        r"\mathbf f_b",
+        "inertia force of the platform from the motion of the base",
+        vector_sum((mass * moved, base.tensor @ h, coriolis)),
+    )
+    turned = J @ (alpha + Cross(w, p.omega)) + Cross(w, J @ (w + p.omega)) + Cross(p.omega, J @ w)
+    moment = define(
+        "mu_b",
+        Cross(h, moved) + turned,
+        r"\boldsymbol\mu_b",
+        "inertia moment of the platform from the motion of the base",
+    )
+    return force, moment
