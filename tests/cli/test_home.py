@@ -42,7 +42,7 @@ def test_closures_are_listed_and_q_is_told(tmp_path: Path) -> None:
         "legs[1]: 2 closures",
         "  [1.167099884, 2.094395102]  home",
         "  [-3.02169032, -2.094395102]",
-        "branch of home: rrr legs: branch_1 = +1 -1",
+        "branch of home: rrr legs: rrr_branch_1 = +1 -1",
     ]
     assert done.stderr.startswith("pne-gen: two_bars.toml: home: q found from X: q = [[1.97449, ")
 

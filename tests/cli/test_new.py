@@ -47,6 +47,11 @@ def test_does_not_replace_unless_forced(tmp_path: Path) -> None:
         (("--legs", "$(reboot)"), "--legs: value '$(reboot)'; expected COUNT-LETTERS"),
         (("--legs", "6-UPS", "--space", "plane"), "--space: value 'plane'; expected one of"),
         (("--legs", "3-UPS", "--space", "planar"), "joint 'U' of UPS leaves the plane"),
+        (("--legs", "6-UPS", "--height", "1"), "angles and --height belong to --radii or --points"),
+        (("--legs", "6-UPS", "--radii", "1,2"), "--radii needs --base-angles"),
+        (("--legs", "3-RPR", "--radii", "a", "--base-angles", "0"), "'a' is not a number"),
+        (("--legs", "6-UPS", "--points", "p.csv"), "p.csv: cannot be read: No such file"),
+        (("--legs", "6-UPS", "--points", "p", "--radii", "1,2"), "exclude each other"),
     ],
 )
 def test_refusals(arguments: tuple[str, ...], part: str, tmp_path: Path) -> None:

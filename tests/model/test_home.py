@@ -206,6 +206,15 @@ def test_a_wrong_unit_is_named_without_q(what: str, told: str) -> None:
     assert f"; with {told} they would close, but units are m and rad" in str(refused.value)
 
 
+def test_degrees_in_rpy_are_told() -> None:
+    form = form_of("stewart")
+    form["legs"][0]["base_frame"] = {"rpy": [0.0, 0.0, 90.0]}
+    form["home"].pop("q")
+    told = r"legs\[0\].base_frame.rpy: more than a turn; rpy_deg is in degrees"
+    with pytest.warns(SpecWarning, match=told), pytest.warns(SpecNote):
+        from_mapping(form, "degrees.json")
+
+
 def test_huge_lengths_are_asked_about() -> None:
     form = in_other_units("stewart", "points")
     form["home"]["X"][2] *= MILLI

@@ -53,5 +53,5 @@ def test_the_control_loop_reaches_the_pose(ran: dict[str, Any]) -> None:
 
 def test_what_is_not_modelled_is_said() -> None:
     section = README.partition("**Not modelled**")[2].partition("\n\n")[0]
-    for word in ("friction", "motors", "elasticity", "clearance", "limits", "slack"):
+    for word in ("elasticity", "clearance", "Coulomb", "rotors", "stops", "slack"):
         assert word in section
