@@ -44,8 +44,8 @@ def overview(bundle: Bundle, collected: Collected, printer: LatexPrinter) -> Ite
     )
     text = f"Put into Newton's and Euler's equations of the platform these give ({over}):"
     for row in (("M", "Z"), ("H", "Hk")) if "Hk" in blocks else (tuple(blocks),):
-        lines = [blocks[array] for array in row]
-        beside = tuple(line for k, of in enumerate(lines) for line in _beside(k, of))
+        parts = [blocks[array] for array in row]
+        beside = tuple(line for k, of in enumerate(parts) for line in _beside(k, of))
         yield Statement(text, beside)
         text = "and for actuators and reactions:"
     chapter = next((c for c in derivation.chapters if defines_blocks(derivation, c)), None)
