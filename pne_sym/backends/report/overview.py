@@ -42,10 +42,12 @@ def overview(bundle: Bundle, collected: Collected, printer: LatexPrinter) -> Ite
         f"{inline(letters[info.name])} runs over the {leg_title(info)} legs"
         for info in derivation.leg_types
     )
-    yield Statement(
-        f"Put into Newton's and Euler's equations of the platform these give ({over}):",
-        tuple(line for k, lines in enumerate(blocks.values()) for line in _beside(k, lines)),
-    )
+    text = f"Put into Newton's and Euler's equations of the platform these give ({over}):"
+    for row in (("M", "Z"), ("H", "Hk")) if "Hk" in blocks else (tuple(blocks),):
+        parts = [blocks[array] for array in row]
+        beside = tuple(line for k, of in enumerate(parts) for line in _beside(k, of))
+        yield Statement(text, beside)
+        text = "and for actuators and reactions:"
     chapter = next((c for c in derivation.chapters if defines_blocks(derivation, c)), None)
     if chapter is not None:
         indexed = printer.with_index()
