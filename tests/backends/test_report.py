@@ -175,7 +175,7 @@ def test_blocks_with_an_extra_coordinate() -> None:
 def test_leg_types_have_their_letters() -> None:
     text = document("planar_mixed")
     assert r"m^* = m_p + \sum_i m_{2,i} + \sum_l m_{2,l} + \sum_n m_{2,n}" in text
-    assert "Leg 1; index $`i`$ in sums." in text
+    assert "Leg 1, of type `rpr`; index $`i`$ in sums." in text
 
 
 def test_collected_forms_have_the_value(name: str) -> None:
