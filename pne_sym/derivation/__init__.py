@@ -22,7 +22,13 @@ from pne_sym.derivation.equation import (
     names_in,
 )
 from pne_sym.derivation.frames import BodyAxes, BodyFrame, rotations_by_place
-from pne_sym.derivation.parameters import AxisRelation, ParameterField, ParameterTable, Rule
+from pne_sym.derivation.parameters import (
+    AxisRelation,
+    NameTakenError,
+    ParameterField,
+    ParameterTable,
+    Rule,
+)
 
 __all__ = [
     "PLATFORM",
@@ -40,6 +46,7 @@ __all__ = [
     "Given",
     "Law",
     "LegTypeInfo",
+    "NameTakenError",
     "Output",
     "ParameterField",
     "ParameterTable",

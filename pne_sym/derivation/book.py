@@ -27,7 +27,7 @@ from pne_sym.derivation.equation import (
 )
 from pne_sym.derivation.frames import BodyFrame
 from pne_sym.derivation.paper import check_reference
-from pne_sym.derivation.parameters import ParameterTable
+from pne_sym.derivation.parameters import NameTakenError, ParameterTable
 from pne_sym.vector import LinearForm, Tensor, TensorSymbol, Vector, VectorSymbol
 from pne_sym.vector.dimensions import DimensionError, dimension_of_unit
 
@@ -62,10 +62,10 @@ class Book:
         """Introduce a name; an entry of a parameter has that one's unit.
 
         Raises:
-            ValueError: the name is taken.
+            NameTakenError: another quantity has it.
         """
         if quantity.name in self.notation:
-            raise ValueError(f"the name {quantity.name!r} is already used")
+            raise NameTakenError(quantity.name)
         leg_type = self._chapters[-1][2] if self._chapters else None
         if quantity.name in self.parameters.entries:
             field, _ = self.parameters.entries[quantity.name]
@@ -220,7 +220,7 @@ class Book:
             self.notation[quantity.name] = replace(quantity, leg_type=axes.leg_type)
             symbol = TensorSymbol(quantity.name)
         if quantity is not None and rhs is not None:
-            id_ = f"{axes.leg_type}-F{quantity.joint}" if axes.leg_type else "F1"
+            id_ = self._id(quantity.name)
             equation = Equation(id_, quantity.meaning, symbol, rhs, Law.GEOMETRY)
         self.body_frames.append(replace(axes, symbol=symbol, equation=equation))
         return symbol

@@ -12,6 +12,14 @@ from numpy.typing import NDArray
 _AXES = "xyz"
 
 
+class NameTakenError(ValueError):
+    """Two quantities of one name."""
+
+    def __init__(self, name: str) -> None:
+        super().__init__(f"the name {name!r} is already used")
+        self.name = name
+
+
 class Rule(enum.StrEnum):
     """What the values of a parameter must be, beyond finite: as the reader demands of a spec."""
 
@@ -100,7 +108,11 @@ class ParameterTable:
     relations: list[AxisRelation] = field(default_factory=list)
 
     def add(self, parameter: ParameterField) -> tuple[sp.Expr, ...]:
-        """Add a field; returns its entries' symbols, zeros where the structure says so."""
+        """Add a field; returns its entries' symbols, zeros where the structure says so.
+
+        Raises:
+            NameTakenError: another field has the name, or an entry of another.
+        """
         self.fields.append(parameter)
         symbols: list[sp.Expr] = []
         for index in range(parameter.size):
@@ -108,6 +120,8 @@ class ParameterTable:
                 symbols.append(sp.S.Zero)
                 continue
             symbol = sp.Symbol(entry_name(parameter.name, parameter.shape, index), real=True)
+            if symbol.name in self.entries:
+                raise NameTakenError(symbol.name)
             self.entries[symbol.name] = (parameter, index)
             symbols.append(symbol)
         return tuple(symbols)

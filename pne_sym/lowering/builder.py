@@ -114,6 +114,14 @@ class Builder:
         self._issued[hint] = k
         return name
 
+    def _stem(self, hint: str, stage: Stage) -> str:
+        """What a name begins with: of what a leg has its own, with the leg type.
+
+        So that no number in a name counts values of other leg types.
+        """
+        stem, of = hint or f"{self.quantity_of.get(self.equation, 'v')}_t", stage.leg_type
+        return stem if not of or f"_{of}_" in f"_{stem}_" else f"{of}_{stem}"
+
     # ---- values ----------------------------------------------------------------------
 
     def let(self, expr: Any, hint: str = "", *, named: bool = False) -> Atom:
@@ -143,7 +151,7 @@ class Builder:
         total_of: str | None = None,
         key: Any = None,
     ) -> sp.Symbol:
-        hint = hint or f"{self.quantity_of.get(self.equation, 'v')}_t"
+        hint = self._stem(hint, stage)
         symbol = algebra.symbol(self._fresh(hint))
         self._stage[symbol] = stage
         statement = Statement(symbol, expr, stage, self.equation, total_of, named, hint)

@@ -13,6 +13,7 @@ from pne_sym.derivation import (
     Derivation,
     Law,
     LegTypeInfo,
+    NameTakenError,
     Output,
     Quantity,
     Role,
@@ -38,6 +39,7 @@ from pne_sym.mechanics.platform_motion import PlatformMotion, introduce_platform
 from pne_sym.mechanics.scales import home_lengths, with_size
 from pne_sym.mechanics.scope import check_scope
 from pne_sym.mechanics.structure import LegType, leg_types
+from pne_sym.model.errors import SpecError
 from pne_sym.model.kinematics import TASK_SPACES, TaskSpace
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.vector import Dot, Vector, VectorSymbol, ZeroVector, sum_over_legs, vector_sum
@@ -48,11 +50,19 @@ def derive(manipulator: Manipulator) -> Derivation:
 
     Raises:
         SpecError: the method does not cover it, or it has no determined dynamics; with the
-            mechanical reason.
+            mechanical reason; names of leg types and joints make one name of two quantities.
 
     Reference: section 2 of the paper; legs are derived once per leg type.
     """
-    book = Book()
+    try:
+        return _derive(Book(), manipulator)
+    except NameTakenError as error:
+        problem = f"two quantities would be called '{error.name}'"
+        expected = "another name for a leg type, a leg or a joint"
+        raise SpecError(manipulator.name, "legs", problem, expected) from error
+
+
+def _derive(book: Book, manipulator: Manipulator) -> Derivation:
     space = TASK_SPACES[manipulator.space]
     platform = introduce_platform(book, manipulator, space)
     if manipulator.moving_base:

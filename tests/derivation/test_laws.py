@@ -104,19 +104,19 @@ def ledger() -> dict[str, set[tuple[Law, str]]]:
     return found
 
 
-def stem(name: str, of: Derivation) -> str:
-    owners = [f"{t.name}_" for t in of.leg_types if name.startswith(f"{t.name}_")]
-    return re.sub(r"\d+", "#", name.removeprefix(max(owners, key=len, default="")))
+def stem(id_: str) -> str:
+    """The name that an equation defines, without leg type and numbers."""
+    return re.sub(r"\d+", "#", id_.rpartition("-")[2])
 
 
 def examine(of: Derivation) -> None:
     constant = set(of.parameters.entries)
     constant |= {q.name for q in of.notation.values() if q.parameter}
     for equation in of.equations():
-        name, law = stem(equation.name, of), equation.law
+        name, law = stem(equation.id), equation.law
         quantity = of.notation[equation.name]
         if law is Law.RULES and equation.reference == COLLECTED:
-            assert quantity.remainder_of or re.match(r"d(#|alpha|y_#)?_", name), name
+            assert quantity.remainder_of or re.match(r"d(alpha|y_#)?_", name), name
             assert equation.expanded is not None, name
         else:
             assert (law, equation.reference) in ledger().get(name, set()), (name, equation)

@@ -59,14 +59,13 @@ def under_other_names(manipulator: Manipulator, names: Any) -> Bundle:
 @pytest.mark.parametrize("name", CASES)
 def test_a_common_prefix_is_all_that_changes(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """The lowering's own names get it too, so that the order is kept."""
-    manipulator, record = model(name), Builder._record
+    manipulator, stem = model(name), Builder._stem
     before = emit(models.bundle(manipulator), TARGETS)
 
-    def recorded(self: Builder, expr: Any, stage: Any, hint: str, *more: Any, **others: Any) -> Any:
-        hint = hint or f"{self.quantity_of.get(self.equation, 'v')}_t"
-        return record(self, expr, stage, prefixed(hint), *more, **others)
+    def renamed_stem(self: Builder, hint: str, stage: Any) -> str:
+        return prefixed(stem(self, hint, stage))
 
-    monkeypatch.setattr(Builder, "_record", recorded)
+    monkeypatch.setattr(Builder, "_stem", renamed_stem)
     after = emit(under_other_names(manipulator, prefixed), TARGETS)
     assert before.keys() == after.keys()
     for file, text in before.items():
