@@ -6,12 +6,15 @@ on: the engine's sources and templates, versions of libraries, the specification
 
 from __future__ import annotations
 
+import fcntl
 import hashlib
 import json
 import os
 import pickle
 import re
 import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import cache
 from importlib.metadata import version
 from itertools import count
@@ -67,8 +70,9 @@ def derivation(name: str) -> Derivation:
 def bundle(manipulator: Manipulator) -> Bundle:
     """The compiled manipulator: derivation and program."""
     kept = _place(manipulator, "pickle")
-    if not kept.exists():
-        keep(kept, pickle.dumps(compile_bundle(manipulator)))
+    with alone(kept):
+        if not kept.exists():
+            keep(kept, pickle.dumps(compile_bundle(manipulator)))
     found: Bundle = pickle.loads(kept.read_bytes())
     return found
 
@@ -91,6 +95,15 @@ def texts(manipulator: Manipulator) -> tuple[str, str]:
 def _place(manipulator: Manipulator, suffix: str) -> Path:
     """The file for what is made of a manipulator."""
     return KEPT / f"{hashlib.sha256(repr(manipulator).encode()).hexdigest()[:32]}.{suffix}"
+
+
+@contextmanager
+def alone(kept: Path) -> Iterator[None]:
+    """Other workers wait, and find made what they would make as well."""
+    KEPT.mkdir(parents=True, exist_ok=True)
+    with kept.with_suffix(".lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
 
 
 def keep(kept: Path, made: bytes) -> None:

@@ -63,11 +63,12 @@ def compiled(source: Path, compiler: str, flags: Sequence[str]) -> Path:
     texts = [file.read_bytes() for file in (source, source.with_suffix(".h"))]
     key = hashlib.sha256(b"\0".join([*texts, " ".join((compiler, *flags)).encode()])).hexdigest()
     kept = models.KEPT / f"{key[:32]}.so"
-    if not kept.exists():
-        made = source.with_suffix(f".{key[:32]}")
-        flags = ["-std=c99", *flags, "-shared", "-fPIC"]
-        run(find_compiler(compiler), *flags, source, "-o", made, "-lm")
-        models.keep(kept, made.read_bytes())
+    with models.alone(kept):
+        if not kept.exists():
+            made = source.with_suffix(f".{key[:32]}")
+            flags = ["-std=c99", *flags, "-shared", "-fPIC"]
+            run(find_compiler(compiler), *flags, source, "-o", made, "-lm")
+            models.keep(kept, made.read_bytes())
     return kept
 
 

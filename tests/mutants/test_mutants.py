@@ -117,6 +117,7 @@ def replaced(**changes: object) -> Fault:
     return Fault(**{**vars(HARMLESS), **changes})  # type: ignore[arg-type]
 
 
+@pytest.mark.only_in_all
 def test_survivors_late_finds_and_wrong_rows(tmp_path: Path) -> None:
     assert try_fault(HARMLESS, SECONDS).verdict is Verdict.SURVIVED
     broken = 'raise NameError("nothing of that name")'

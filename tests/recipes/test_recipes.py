@@ -116,6 +116,7 @@ def documented(copy: Path, blocks: list[Block], letter: str) -> None:
     assert before.startswith("| `")
 
 
+@pytest.mark.only_in_all
 def test_a_joint_kind(copy: Path) -> None:
     blocks = recipe("Add a joint kind")
     assert len(blocks) == 3
@@ -132,6 +133,7 @@ def test_a_joint_kind(copy: Path) -> None:
     assert (copy / "mine.toml").is_file(), told
 
 
+@pytest.mark.only_in_all
 def test_a_platform_joint(copy: Path) -> None:
     blocks = recipe("Add a platform joint")
     assert len(blocks) == 3

@@ -23,7 +23,7 @@ NAMES = (
     "tripod_3upu",
 )
 """Each space; iterated, constrained, redundant, with extra coordinates, with moments."""
-CASES = sampled(NAMES, 0, keep=(*SAMPLE, "hexapod_6x6r"))
+CASES = sampled(NAMES, 0, keep=SAMPLE)
 
 
 def row_of(vectors: Vectors, row: tuple[int, ...]) -> Vectors:
@@ -53,7 +53,7 @@ def broadcast(value: Array, lead: tuple[int, ...], name: str) -> Array:
 
 
 # Up to eight states are computed one by one, more as arrays.
-@pytest.mark.parametrize("lead", [(1,), (2, 1, 3), (3, 4)])
+@pytest.mark.parametrize("lead", sampled([(2, 1, 3), (3, 4), (1,)], 0, keep=[(2, 1, 3), (3, 4)]))
 @pytest.mark.parametrize("name", CASES)
 def test_leading_axes(name: str, lead: tuple[int, ...]) -> None:
     c = case(name, 1)

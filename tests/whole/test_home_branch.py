@@ -16,6 +16,7 @@ from pne_sym.program.iteration import close_loops, gap_and_jacobian, on_home_s_b
 from tests import models
 from tests.backends.c_library import NOT_CONVERGED, OK, QUICK, Array, CLibrary
 from tests.oracle.coordinates import joint_slices
+from tests.sampling import sampled
 
 ROWS = {
     "planar_3rrp_extra": (0, 1),
@@ -172,7 +173,7 @@ def _elbow_over(leg, q: Array, unknown: list[int]) -> Array:  # type: ignore[no-
     raise AssertionError("no other closure")
 
 
-@pytest.mark.parametrize("name", ["planar_3rrr", "translational_pprhu_rr"])
+@pytest.mark.parametrize("name", sampled(["planar_3rrr", "translational_pprhu_rr"], 2))
 @pytest.mark.parametrize("real", ["double", "float"])
 def test_c_refuses_the_same(name: str, real: str, tmp_path: Path) -> None:
     """Single and batch, in both precisions: the statuses are those of the NumPy module."""
